@@ -13,8 +13,8 @@ CLANG    := $(filter clang,$(shell $(CXX) --version 2>/dev/null))
 # Of -march=native clang 19 says on processors with AVX10 that it contradicts itself.
 QUIET    := $(if $(CLANG),-Wno-unknown-warning-option -Wno-invalid-feature-combination)
 HOMEBREW := $(addprefix -idirafter ,$(addsuffix /include,$(shell brew --prefix 2>/dev/null)))
-# Which modules the core includes, by ten files: tree.h, choice.h, prepare.h, files.h, mesh.h, scene_file.h, options.h, plan.h, render.h,
-# penumbra.cpp.  All others name what they need.
+# Which modules the core includes, by eleven files: tree.h, choice.h, prepare.h, near_misses.h, files.h, mesh.h, scene_file.h, options.h, plan.h,
+# render.h, penumbra.cpp.  All others name what they need.
 WITH     := $(if $(filter wide,$(TREE)),-DTREE_WIDE) $(if $(wildcard src/many),-DWITH_MANY) $(if $(wildcard src/mesh),-DWITH_MESH) \
             $(if $(wildcard src/check),-DWITH_CHECK) $(if $(wildcard src/keep),-DWITH_KEEP) $(if $(wildcard src/unseen),-DWITH_UNSEEN) \
             $(if $(wildcard src/replay),-DWITH_REPLAY) $(if $(wildcard src/show),-DWITH_SHOW)

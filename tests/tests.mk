@@ -80,12 +80,12 @@ build/extremes-$(REAL).rows: $(EXTREMES:%=$(OBJECTS)/tests/whole/extremes_%_test
 # their folder and of those below, of src and of tests, and the oracle; so may src/course, where students write tests.
 LAYERS := base:0 world:1 wide:2 many:2 path:2 film:3 text:4 mesh:5 check:5 keep:5 unseen:5 replay:5 app:6 show:7 web:7 shadow:7 voronoi:7 radiosity:8 labs:9 course:9 book:9 \
           oracle:10 whole:10 faults:10 fuzz:10
-# The core names no module, but in ten files: which tree, which choice of lights (two), whether files are durable, meshes read, scenes checked, paths
+# The core names no module, but in eleven files: which tree, which choice of lights (two), what films know of near misses, whether files are durable, meshes read, scenes checked, paths
 # replayed, films kept, whether light may be unseen, and pictures shown.  Nor do tests of the core.  A module's program stands above the app.
 LECTURE := base world path film
 CORE    := $(LECTURE) text app
 MODULES := wide many mesh check keep unseen replay show web shadow voronoi radiosity
-DOORS   := world/tree.h:wide world/choice.h:many world/prepare.h:many text/files.h:keep text/mesh.h:mesh text/scene_file.h:check app/options.h:replay app/render.h:keep app/plan.h:unseen app/penumbra.cpp:show
+DOORS   := world/tree.h:wide world/choice.h:many world/prepare.h:many film/near_misses.h:unseen text/files.h:keep text/mesh.h:mesh text/scene_file.h:check app/options.h:replay app/render.h:keep app/plan.h:unseen app/penumbra.cpp:show
 # Of a folder that is named here, a module includes these headers alone.
 NEEDS   := wide:world/shapes.h
 

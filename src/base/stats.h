@@ -6,11 +6,6 @@
 
 namespace penumbra {
 
-// A sum of numbers >= 0, in multiples of 2^-60: it does not depend on their order.
-__extension__ typedef unsigned __int128 FixedPoint;
-inline FixedPoint fixed_point(double value) { return FixedPoint(std::min(value, 0x1p40) * 0x1p60); }
-inline double value_of(FixedPoint sum) { return std::ldexp(double(sum), -60); }
-
 inline double square(double x) { return x * x; }  // double, also where the renderer uses float
 
 // Count, mean and sum of squared deviations, updated by one number (Welford 1962) or merged (Chan,

@@ -10,6 +10,7 @@
 #include <span>
 #include <tuple>
 
+#include "base/stats.h"
 #include "film/image.h"
 #include "film/near_misses.h"
 #include "path/sampler.h"

@@ -1,51 +1,13 @@
-// film/near_misses.h  1  sums over paths that met a light, or nearly did, and what it brought
+// film/near_misses.h  1  what a film knows of light that samples nearly met: by -DWITH_UNSEEN
 #pragma once
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
 
-#include "base/stats.h"
-
+#ifdef WITH_UNSEEN
+#include "unseen/near_misses.h"
+#else
 namespace penumbra {
-
-inline constexpr size_t growths = 11;  // a light has s^2 times its area, for s = 1, 2, 4 ... 1024
-
-inline constexpr size_t brightnesses = 8;
-
-// What lights bring to the picture by paths that aim, before a render: sums over pixels of the mean
-// channel and of its square, and the variance of the first.  What of it came during the render.
-struct Brought {
-    double sum = 0, squares = 0, variance = 0;
-    uint64_t came = 0, hits = 0;  // in 2^-40 of the sum; paths that brought it
-
-    void add_came(const Brought& other) { came += other.came, hits += other.hits; }
-};
-
-// What a film knows of a group of lights: how the camera sees them, and near misses (src/unseen).
 struct NearMisses {
-    double line = 0;  // of the first light, from 1 on; 0 if unknown
-    double K = 1;     // samples of a pixel of that area, over n
-    double L2 = 0;    // greatest square of radiance (intensity of points), mean of the channels
-    double area = 0;  // visible area in pixels
-    double a = 0;     // sum over pixels of a (1 - a), for the covered part a of a pixel
-
-    // From the light, to pixels that see no mirror or glass; from the eye, apart by the octaves of
-    // the radiance that a path brings, for a sum of all would hide what is rare and bright.
-    Brought from_light{};
-    std::array<Brought, brightnesses> from_eye{};
-    // Sums of the squares of what these hits added to their pixels, in 2^-20 L2.
-    std::array<FixedPoint, brightnesses> squares{};
-    // Sums of c and c^2 at each growth.
-    std::array<std::array<FixedPoint, 2>, growths> sum{};
-
-    // Adds sums of more samples.
-    void add(const NearMisses& other) {
-        from_light.add_came(other.from_light);
-        for (size_t k = 0; k < brightnesses; ++k)
-            from_eye[k].add_came(other.from_eye[k]), squares[k] += other.squares[k];
-        for (size_t k = 0; k < 2 * growths; ++k) sum[k / 2][k % 2] += other.sum[k / 2][k % 2];
-    }
+    void add(const NearMisses&) {}
+    void end_pilot() {}
 };
-
 }  // namespace penumbra
+#endif

@@ -53,14 +53,12 @@ inline std::vector<uint8_t> weights_of(const std::vector<float>& deviation, Size
 inline constexpr uint64_t pilot_samples = 4;
 inline constexpr uint8_t min_of_noisy = 4;
 
-// Chooses weights by the pilot, which all blocks have; those of `noisy` pixels are 4 or more.  Near
-// misses and squares of the pilot do not have the pixel's share, and go; what came stays, rather
-// too much.
+// Chooses weights by the pilot, which all blocks have; those of `noisy` pixels are 4 or more.
 inline void choose_weights(Film& film, const std::vector<size_t>& noisy = {}) {
     film.weight = weights_of(film.deviation, film.size);
     for (size_t i : noisy) film.weight[i] = std::max(film.weight[i], min_of_noisy);
     film.deviation = std::vector<float>();  // with its memory
-    for (NearMisses& group : film.near) group.sum = {}, group.squares = {};
+    for (NearMisses& group : film.near) group.end_pilot();
     film.is_pilot = false;
     film.pilot = film.taken[0];
     film.taken.assign(film.taken.size(), 0);

@@ -1,4 +1,4 @@
-// keep/film_file.h  1  .film files: a head that says what is in them, numbers, and a checksum; films from them
+// keep/film_file.h  1  .film files: a head that says what is in them, numbers, and a checksum
 //
 //     penumbra film 9                    what it is, and the version of this format
 //     bytes 00000000000000001536         of numbers, after the head
@@ -19,9 +19,6 @@ namespace penumbra {
 
 static_assert(std::endian::native == std::endian::little,
               "numbers are written as memory holds them");
-static_assert(sizeof(NearMisses) == 40 + (1 + brightnesses) * sizeof(Brought) +
-                                        (brightnesses + 2 * growths) * sizeof(FixedPoint),
-              "a file holds no gaps");
 
 // FNV-1a (Fowler, Noll, Vo 1991).  A step is a bijection of the sum for any byte, and of the byte
 // for any sum: a single damaged byte always changes the sum.  Several damaged bytes leave it the

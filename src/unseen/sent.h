@@ -10,8 +10,9 @@
 #include <numeric>
 #include <optional>
 
-#include "film/near_misses.h"
+#include "base/stats.h"
 #include "unseen/aims.h"
+#include "unseen/near_misses.h"
 
 namespace penumbra {
 
