@@ -101,7 +101,7 @@ private:
     // Passes of the pilot have fixed ends, because deviations are rounded.
     uint64_t next_end() const {
         const uint64_t n = film_.min_taken();
-        if (film_.is_pilot) return std::max(film_.max_taken(), n + 1);
+        if (film_.is_pilot) return n + 1;
         const double elapsed = watch_.elapsed(), now = film_.samples_per_pixel();
         const double each = now > 0 ? elapsed / now * (film_.samples_per_pixel(n + 1) - now) : 0;
         const uint64_t to = end_of_pass(n, elapsed, each, plan_.seconds);

@@ -2,6 +2,7 @@
 #pragma once
 #include "base/approx.h"
 #include "radiosity/projection.h"
+#include "text/scene_file.h"
 
 namespace penumbra::rooms {
 

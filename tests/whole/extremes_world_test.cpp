@@ -1,5 +1,6 @@
 // whole/extremes_world_test.cpp  rays and shapes, directions, materials, the camera
 #include "base/stats.h"
+#include "text/scene_file.h"
 #include "whole/extremes.h"
 #include "world/nearest.h"
 #include "world/scene.h"
