@@ -106,7 +106,7 @@ inline Picture render(const Options& o, const Plan& plan, const SampleFunction& 
     Run run = run_of(film, plan, spent(loop.tally()), stop);
     run.is_radiance = !o.view.of;
     const std::string not_kept = keeper.write(film, run, !run.interrupted());
-    film.deviation = std::vector<float>();  // makes room for the image
+    film.pilot_deviation = std::vector<float>();  // makes room for the image
     return {image_of(film), run, not_kept};
 }
 

@@ -299,7 +299,7 @@ private:
             if (by(i) == 0) continue;
             const Shape shape = s.shapes[i];
             const int32_t k = s.light_of[i];
-            const vec3 normal = k == no_light ? facing(shape).n : s.lights[size_t(k)].n;
+            const vec3 normal = k == no_light ? constants_of(shape).n : s.lights[size_t(k)].n;
             s.shapes[i] = lifted(shape, normal, by(i));
             if (k == no_light || back[size_t(k)] == no_light) continue;
             add_shape(s, lifted(shape, normal, -by(i)), s.material_of[i], back[size_t(k)]);
@@ -312,7 +312,7 @@ private:
 
 // True if p lies on the shape within rounding, so that its side would be arbitrary.  The bound is a
 // quarter of rounding_error, the error that the intersectors actually make.
-inline bool lies_on(const Shape& s, const Facing& f, vec3 p) {
+inline bool lies_on(const Shape& s, const ShapeConstants& f, vec3 p) {
     const real error = f.error / 4 + 4 * ulp * max_abs(p);
     const vec3 n = f.n == vec3{} ? unit(p - s.a) : f.n;
     const Ray through{p - error * n, n, 2 * error};
@@ -343,7 +343,7 @@ inline std::optional<LightOnShape> point_light_on_surface(const Scene& s, const 
             left -= may ? 16 : 1;
             if (left < 0)
                 throw UserError(name + ": too many lights without a surface where shapes are");
-            if (may && lies_on(s.shapes[i], s.facing[i], p)) first = LightOnShape{*k, i};
+            if (may && lies_on(s.shapes[i], s.constants[i], p)) first = LightOnShape{*k, i};
         }
     }
     return first;
@@ -358,7 +358,7 @@ inline bool is_coarse(const Shape& s) {
 
 // The first other shape too near to the middle of x, which is shape `own` or a point: along +-n if
 // x is flat, else along the axes.  A shape within four errors of a flat one touches it.
-inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint32_t own,
+inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, ShapeConstants f, uint32_t own,
                                    real reach) {
     const vec3 middle = ask(x, [&](auto kind) {
         vec3 sum;
@@ -370,7 +370,7 @@ inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint3
         if (f.n == vec3{}) d.*axis[k / 4] = k & 1 ? -1 : 1;
         const vec3 o = middle + ((k & 2 ? x.r : 0) + 4 * f.error) * d;
         const auto hit = s.bvh.closest({o, d, reach});
-        const real error = hit ? std::max(f.error, s.facing[hit->id].error) : 0;
+        const real error = hit ? std::max(f.error, s.constants[hit->id].error) : 0;
         if (hit && hit->id != own && length(o + hit->t * d - middle) < 200 * error) return hit;
     }
     return {};
@@ -381,7 +381,7 @@ inline std::optional<Hit> near_hit(const NamedScene& s, Shape x, Facing f, uint3
 // moved.
 inline std::map<std::string, uint32_t> coarse_lengths(const NamedScene& s, bool moved) {
     std::map<std::string, uint32_t> found;
-    const real reach = 200 * std::ranges::max(s.facing, {}, &Facing::error).error;
+    const real reach = 200 * std::ranges::max(s.constants, {}, &ShapeConstants::error).error;
     auto look_about = [&](vec3 p, const std::string& what) {
         if (const auto hit = near_hit(s, {p, p, p}, {}, UINT32_MAX, reach))
             found.emplace(what, hit->id);
@@ -393,7 +393,7 @@ inline std::map<std::string, uint32_t> coarse_lengths(const NamedScene& s, bool 
         if (is_coarse(s.shapes[i])) found.emplace("size", i);
         const bool first = i == 0 || s.line_of[i] != s.line_of[i - 1];
         if (i % (1 + s.shapes.size() / 1024) > 0 && !(first && firsts++ < 1024)) continue;
-        const auto hit = pairs ? std::nullopt : near_hit(s, s.shapes[i], s.facing[i], i, reach);
+        const auto hit = pairs ? std::nullopt : near_hit(s, s.shapes[i], s.constants[i], i, reach);
         if (!hit || (moved && (may_move(s, i) || may_move(s, hit->id)))) continue;
         found.emplace("distance to " + where(s, hit->id), i);
         ++pairs;

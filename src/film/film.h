@@ -54,15 +54,15 @@ inline constexpr uint32_t max_replications = 1024, max_weight = 16;
 // The file of a film holds these arrays.
 struct Film {
     Size size;
-    int first_row = 0;                  // row of the whole picture where this band begins
-    uint32_t replications = 2;          // K of every pixel
-    bool is_pilot = false;              // weights are not yet chosen, and are 1
-    uint64_t pilot = 0;                 // samples of a replication when they were chosen
-    std::vector<Sum> sum = {};          // K of pixel 0, K of pixel 1 ...
-    std::vector<uint8_t> weight = {};   // w of each pixel
-    std::vector<float> deviation = {};  // pilot: root of the sum of squared deviations
-    std::vector<uint64_t> taken = {};   // n of each block of pixels
-    std::vector<NearMisses> near = {};  // groups of lights
+    int first_row = 0;                        // row of the whole picture where this band begins
+    uint32_t replications = 2;                // K of every pixel
+    bool is_pilot = false;                    // weights are not yet chosen, and are 1
+    uint64_t pilot = 0;                       // samples of a replication when they were chosen
+    std::vector<Sum> sum = {};                // K of pixel 0, K of pixel 1 ...
+    std::vector<uint8_t> weight = {};         // w of each pixel
+    std::vector<float> pilot_deviation = {};  // root of the sum of squared deviations
+    std::vector<uint64_t> taken = {};         // n of each block of pixels
+    std::vector<NearMisses> near = {};        // groups of lights
 
     size_t pixels() const { return size_t(size.width) * size_t(size.height); }
 
@@ -96,7 +96,7 @@ inline Film make_film(Size size, uint32_t K, bool is_pilot, int first_row = 0) {
     Film film{size, first_row, K, is_pilot};
     film.sum.resize(film.pixels() * K);
     film.weight.assign(film.pixels(), 1);
-    film.deviation.resize(is_pilot ? film.pixels() : 0);
+    film.pilot_deviation.resize(is_pilot ? film.pixels() : 0);
     film.taken.resize(film.blocks());
     return film;
 }
@@ -167,7 +167,7 @@ inline void add_samples(Film& film, size_t block, uint64_t n, const SampleFuncti
         const std::span<Sum> sum(&sums[(i - from) * K], K);
         const uint64_t first = film.samples(i), last = film.samples(i, n);
         double count = double(K * first);
-        if (film.is_pilot) deviation[i - from] = film.deviation[i];
+        if (film.is_pilot) deviation[i - from] = film.pilot_deviation[i];
         tally.share = 1.0 / double(K * film.weight[i]);
         for (uint32_t k = 0; k < K; ++k)
             for (uint64_t s = first; s < last; ++s, ++count) {
@@ -180,7 +180,8 @@ inline void add_samples(Film& film, size_t block, uint64_t n, const SampleFuncti
             }
     }
     std::ranges::copy(sums, film.sum.begin() + ptrdiff_t(from * K));
-    std::ranges::copy(deviation, film.deviation.begin() + ptrdiff_t(film.is_pilot ? from : 0));
+    std::ranges::copy(deviation,
+                      film.pilot_deviation.begin() + ptrdiff_t(film.is_pilot ? from : 0));
     film.taken[block] = std::max(film.taken[block], n);
 }
 

@@ -55,9 +55,9 @@ inline constexpr uint8_t min_of_noisy = 4;
 
 // Chooses weights by the pilot, which all blocks have; those of `noisy` pixels are 4 or more.
 inline void choose_weights(Film& film, const std::vector<size_t>& noisy = {}) {
-    film.weight = weights_of(film.deviation, film.size);
+    film.weight = weights_of(film.pilot_deviation, film.size);
     for (size_t i : noisy) film.weight[i] = std::max(film.weight[i], min_of_noisy);
-    film.deviation = std::vector<float>();  // with its memory
+    film.pilot_deviation = std::vector<float>();  // with its memory
     for (NearMisses& group : film.near) group.end_pilot();
     film.is_pilot = false;
     film.pilot = film.taken[0];

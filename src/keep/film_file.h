@@ -156,11 +156,11 @@ inline Film film_but_sums(FilmReader& file, Size size) {
     if (bytes_of_sums == 0 || file.left() < bytes_of_sums) file.refuse("is too short for its size");
     f.is_pilot = file.said("weights-chosen") == "no";
     f.pilot = uint64_t(file.number("pilot", f.is_pilot ? 0 : double(pilot_samples)));
-    f.taken.resize(f.blocks()), f.weight.resize(n), f.deviation.resize(f.is_pilot ? n : 0);
+    f.taken.resize(f.blocks()), f.weight.resize(n), f.pilot_deviation.resize(f.is_pilot ? n : 0);
     f.near.resize(size_t(file.number("light-groups", 1 << 10)));
     file.read(std::as_writable_bytes(std::span(f.taken)));
     file.read(std::as_writable_bytes(std::span(f.weight)));
-    file.read(std::as_writable_bytes(std::span(f.deviation)));
+    file.read(std::as_writable_bytes(std::span(f.pilot_deviation)));
     file.read(std::as_writable_bytes(std::span(f.near)));
     auto impossible = [most = f.is_pilot ? 1 : max_weight](uint8_t w) {
         return !std::has_single_bit(w) || w > most;

@@ -96,7 +96,7 @@ public:
                                      {"light-groups", std::to_string(f.near.size())}});
             write_film_file(path_, head,
                             {std::as_bytes(std::span(f.taken)), std::as_bytes(std::span(f.weight)),
-                             std::as_bytes(std::span(f.deviation)),
+                             std::as_bytes(std::span(f.pilot_deviation)),
                              std::as_bytes(std::span(f.near)), std::as_bytes(std::span(f.sum))});
             return "";
         } catch (const SystemError& e) {

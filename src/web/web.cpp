@@ -240,7 +240,7 @@ EXPORT(took) void took(double n) { film.taken.assign(film.blocks(), uint64_t(n))
 
 // Where the page reads and writes a film: sums of all replications, deviations of the pilot.
 EXPORT(sums) double* sums() { return film.sum[0].data(); }
-EXPORT(deviations) float* deviations() { return film.deviation.data(); }
+EXPORT(deviations) float* deviations() { return film.pilot_deviation.data(); }
 
 // Near misses: the page moves their sums from workers to the desk.
 EXPORT(near) NearMisses* near() { return film.near.data(); }

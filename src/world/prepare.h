@@ -15,8 +15,8 @@ namespace penumbra {
 // Scene files are checked first, and surfaces that lie in each other moved apart: see src/check.
 inline void prepare(Scene& s) {
     s.bvh = Tree(s.shapes);
-    s.facing.clear();
-    for (const Shape& shape : s.shapes) s.facing.push_back(facing(shape));
+    s.constants.clear();
+    for (const Shape& shape : s.shapes) s.constants.push_back(constants_of(shape));
     s.light_choice = light_choice_for(s);  // last: it may trace rays
 }
 

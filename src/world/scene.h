@@ -51,14 +51,14 @@ struct Scene {
 
     int dropped = 0;  // triangles that have no area
 
-    Tree bvh;                    // from here on made by prepare
-    std::vector<Facing> facing;  // of each shape
+    Tree bvh;                               // from here on made by prepare
+    std::vector<ShapeConstants> constants;  // of each shape
     LightChoice light_choice;
 
     const Material& material_at(uint32_t shape) const { return materials[material_of[shape]]; }
     const Material& material(const Hit& hit) const { return material_at(hit.id); }
     Surface surface(const Ray& ray, const Hit& hit) const {
-        return penumbra::surface(shapes[hit.id], facing[hit.id], ray, hit);
+        return penumbra::surface(shapes[hit.id], constants[hit.id], ray, hit);
     }
 };
 

@@ -157,7 +157,7 @@ inline std::optional<Hit> intersect_sphere(const Shape& s, const Ray& ray, real 
 //     surface(s, f, ray, hit)     the point hit, moved onto the shape: exact also far from the eye
 
 // Properties of all points of a shape: the unit normal, if it is flat, and Surface::error.
-struct Facing {
+struct ShapeConstants {
     vec3 n;
     real error = 0;
 };
@@ -176,7 +176,7 @@ struct TriangleShape {
     }
     static vec3 normal(const Shape& s) { return unit(area_vector(s)); }
     static constexpr auto intersect = intersect_triangle;
-    static Surface surface(const Shape& s, const Facing& f, const Ray&, const Hit& hit) {
+    static Surface surface(const Shape& s, const ShapeConstants& f, const Ray&, const Hit& hit) {
         return {(1 - hit.v - hit.w) * s.a + hit.v * s.b + hit.w * s.c, f.n, f.error};
     }
 };
@@ -193,7 +193,8 @@ struct SphereShape {
         return intersect_sphere(s, ray, tmax);
     }
     // So far away that rounding leaves only the centre, it is the point towards the eye.
-    static Surface surface(const Shape& s, const Facing& f, const Ray& ray, const Hit& hit) {
+    static Surface surface(const Shape& s, const ShapeConstants& f, const Ray& ray,
+                           const Hit& hit) {
         vec3 out = ray.o + hit.t * ray.d - s.a;
         vec3 n = out == vec3{} ? -ray.d : unit(out);
         return {s.a + s.r * n, n, f.error};
@@ -225,14 +226,14 @@ inline Box bounds(const Shape& s) {
 inline std::optional<Hit> intersect(const Shape& s, const Ray& ray, const Shear& k, real tmax) {
     return ask(s, [&](auto kind) { return kind.intersect(s, ray, k, tmax); });
 }
-inline Facing facing(const Shape& s) {
+inline ShapeConstants constants_of(const Shape& s) {
     return {ask(s, [&](auto kind) { return kind.normal(s); }), rounding_error(s)};
 }
-inline Surface surface(const Shape& s, const Facing& f, const Ray& ray, const Hit& hit) {
+inline Surface surface(const Shape& s, const ShapeConstants& f, const Ray& ray, const Hit& hit) {
     return ask(s, [&](auto kind) { return kind.surface(s, f, ray, hit); });
 }
 inline Surface surface(const Shape& s, const Ray& ray, const Hit& hit) {
-    return surface(s, facing(s), ray, hit);
+    return surface(s, constants_of(s), ray, hit);
 }
 
 // ---- Where the next ray starts ------------------------------------------------------------------

@@ -461,7 +461,7 @@ TEST_CASE("memory for a film and its image is what its arrays have") {
                     if (is_chosen && is_pilot) choose_weights(f);
                     const Image image = image_of(f);
                     auto bytes = [](const auto& v) { return double(v.capacity() * sizeof v[0]); };
-                    const double later = std::max(bytes(f.deviation), bytes(image.pixels));
+                    const double later = std::max(bytes(f.pilot_deviation), bytes(image.pixels));
                     const double all = bytes(f.sum) + bytes(f.weight) + bytes(f.taken) + later;
                     CHECK(all <= bytes_of(size, K));
                     CHECK(all > 0.8 * bytes_of(size, K));

@@ -323,14 +323,14 @@ TEST_CASE("deviations of a pilot are roots of squared distances to the mean, of 
                                 squares += about_mean * std::pow(x - sum[c] / count, 2);
                                 sum[c] += (1 - about_mean) * x;
                             }
-                CHECK(std::abs(double(f.deviation[i]) - std::sqrt(squares)) <=
+                CHECK(std::abs(double(f.pilot_deviation[i]) - std::sqrt(squares)) <=
                       1e-6 * std::sqrt(squares));
             }
         }
-    CHECK(make_film({3, 3}, 2, false).deviation.empty());
+    CHECK(make_film({3, 3}, 2, false).pilot_deviation.empty());
     for (real level : {real(1e-30), real(1e30)}) {  // their squares are no floats
         Film f = make_film({1, 1}, 1, true);
         fill(f, 2, [&](const PixelSample& s, Tally&) { return level * rgb{real(s.i), 0, 0}; });
-        CHECK(double(f.deviation[0]) == about(double(level) * std::sqrt(0.5), 1e-6));
+        CHECK(double(f.pilot_deviation[0]) == about(double(level) * std::sqrt(0.5), 1e-6));
     }
 }

@@ -17,7 +17,7 @@ inline void check_scene(const NamedScene& s) {
     const size_t n = s.shapes.size();
     demand(n > 0, "an empty scene");
     for (size_t other :
-         {s.material_of.size(), s.light_of.size(), s.line_of.size(), s.facing.size()})
+         {s.material_of.size(), s.light_of.size(), s.line_of.size(), s.constants.size()})
         demand(other == n, "lists of other lengths than shapes");
     demand(s.line_of_light.size() == s.lights.size(), "lights without lines");
     demand(s.names.size() == s.materials.size(), "materials without names");

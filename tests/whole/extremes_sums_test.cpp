@@ -96,7 +96,7 @@ double film_far_from_zero() {
         const real L = real(1e8) + (s.i % 2 ? real(1) : real(-1));
         return rgb{L, L, L};
     });
-    return relative(film.deviation[0], std::sqrt(3e3));
+    return relative(film.pilot_deviation[0], std::sqrt(3e3));
 }
 
 // P(|z| > 20), and Student's t far out: P(|t| > x) -> 2 / (pi x) for one degree of freedom.
