@@ -118,7 +118,7 @@ struct House {
         for (const char* name : {"beside.cpp", "course.mk"})
             folder.write(std::string("src/course/") + name, "// nothing\n");
         for (const std::string name :
-             {"film", "app", "mesh", "check", "replay", "show", "web", "text"})
+             {"film", "app", "many", "mesh", "check", "replay", "show", "web", "text"})
             folder.write("src/" + name + "/nothing.h", "// " + name + "/nothing.h  1  nothing\n");
         for (const char* name : {"read_pfm.h", "pair.h"})
             folder.write(std::string("src/keep/") + name, "// nothing\n");
