@@ -62,7 +62,6 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
             const bool outside = dot(x.n, ray.d) < 0;
             const Frame local = frame(outside ? x.n : -x.n);
             const vec3 wo = local.to_local(-ray.d);
-            if (!(wo.z > 0)) break;  // edge-on
             if (!m.is_delta()) {
                 add_arrivals(arrivals, s, tree, x, local, m, wo, double(max_of(beta)),
                              hash(path, max_draws + draws));
