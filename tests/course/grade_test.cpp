@@ -222,7 +222,8 @@ TEST_CASE(
     const std::string mine = std::regex_replace(twice_right, std::regex("sum|\\bx\\b"), "my$&");
     course.hand_in("copy",
                    {{"1.1", "// mine\n" + mine}, {"1.2", square_right}, {"1.3", cube_right}});
-    std::string ours = std::regex_replace(twice_right, std::regex("0;"), "x - x;");
+    // A copy is one, though it is refused; what both left open is none.
+    std::string ours = std::regex_replace(twice_right, std::regex("0;"), "x - x; asm(\"\");");
     course.hand_in("one", {{"1.1", ours}});
     course.hand_in("other", {{"1.1", std::regex_replace(ours, std::regex("sum"), "total")}});
     course.hand_in("honest", {{"1.1", whole}, {"1.2", square_right}, {"1.3", cube_right}});
@@ -234,17 +235,24 @@ TEST_CASE(
     INFO(course.said.out);
     CHECK(course.said.has("8 submissions, 3 exercises"));
     CHECK(course.said.has("6 to look at"));
+    const std::string reserved =
+        " of src/world/numbers.h holds asm: names that C++ and compilers reserve are not allowed "
+        "in a region";
     CHECK(course.csv() ==
           "student,number,1.1,1.2,1.3,sum,of,look at\r\nAda Lovelace,4711,2,0,0,2,12,\r\n"
           "ann,,2,0,0,2,12,1.3: src/path/cube.h is missing\r\n"
           "copy,,2,4,6,12,12,all: equal to the published solution\r\nhonest,,2,4,6,12,12,\r\n"
-          "hostile,,0,0,0,0,12,\"1.1: refused: line 6 of src/world/numbers.h holds asm: names that "
-          "C++ and compilers reserve are not allowed in a region; 1.2: hostile? square(0), ... "
-          "ends the "
-          "program, with exit status 0; 1.3: the program would have more than 64 MB\"\r\n"
-          "one,,2,0,0,2,12,1.1: equal to that of other\r\n"
-          "other,,2,0,0,2,12,1.1: equal to that of one\r\n"
-          "x,12,0,0,0,0,12,all: the archive is damaged\r\n");
+          "hostile,,0,0,0,0,12,\"1.1: refused: line 6" +
+              reserved +
+              "; 1.2: hostile? square(0), ... ends the program, with exit status 0; 1.3: the "
+              "program would have more than 64 MB\"\r\n"
+              "one,,0,0,0,0,12,1.1: refused: line 7" +
+              reserved +
+              "; 1.1: equal to that of other\r\n"
+              "other,,0,0,0,0,12,1.1: refused: line 7" +
+              reserved +
+              "; 1.1: equal to that of one\r\n"
+              "x,12,0,0,0,0,12,all: the archive is damaged\r\n");
     const std::string who =
         "6 of 8 students have no number, and are not in moodle.csv and "
         "canvas.csv. Grade the folder";
