@@ -45,17 +45,17 @@ std::function<rgb(const Start&)> view_of(const Options& o, const Scene& scene) {
 }
 
 // The function that renders a sample.  It abandons a path after an interrupt.
-SampleFunction radiance_of(const Options& o, const Scene& scene, const Pattern& pattern,
+SampleFunction radiance_of(const Options& o, const Scene& scene, const SamplerSettings& settings,
                            const std::optional<LightRecorder>& recorder) {
     return [&, view = view_of(o, scene)](const PixelSample& s, Tally& tally) {
-        const Start at = start(scene, pattern, s);
+        const Start at = start(scene, settings, s);
         if (view) return ++tally.rays, view(at);
         auto misses = recorder->visitor(tally);
         return Li(scene, o.technique, at.ray, at.sampler,
-                  [&](const Segment& segment, const Step& e) {
+                  [&](const PathState& path, const VertexEvents& e) {
                       if (interrupted) throw Interrupted();
                       tally.rays += 1 + (e.direct.light != nullptr);
-                      misses(segment, e);
+                      misses(path, e);
                   });
     };
 }
@@ -90,9 +90,9 @@ int penumbra_main(const std::vector<std::string>& words) {
     if (print_manual(o, table, before_options, after_options)) return 0;
     const ParsedScene parsed = load(o);
     const NamedScene& scene = parsed.scene;
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
+    const SamplerSettings settings = sampler_settings(o.sampler, o.seed, scene.depth);
     if (o.replay) {
-        replay(scene, o.technique, pattern, *o.replay, view_of(o, scene));
+        replay(scene, o.technique, settings, *o.replay, view_of(o, scene));
         return 0;
     }
     const auto outputs = outputs_of(o, parsed, "", scene.size);
@@ -103,7 +103,7 @@ int penumbra_main(const std::vector<std::string>& words) {
     if (!o.view.of)
         recorder.emplace(scene, o.technique, rows.first, rows.count(), scene.line_of_light);
     const Plan plan = plan_of(o, scene, recorder ? &*recorder : nullptr);
-    const SampleFunction L = radiance_of(o, scene, pattern, recorder);
+    const SampleFunction L = radiance_of(o, scene, settings, recorder);
     const FilmOf what = film_of(table, o, parsed, plan);
     show.begin(o, outputs);
     const auto look = [&](const Film& film, const Spent& spent) {

@@ -61,8 +61,8 @@ inline Run run_of(const Film& film, const Plan& plan, const Spent& spent, Stop s
     run.doubt = in_words(doubt_of(film, run.error, plan.may_miss_light),
                          [&] { return LightRecorder::why_unknown(film, run.error); });
     run.replications = film.replications;
-    const uint64_t n = film.min_taken();
-    if (n > 0 && n == film.max_taken() && !film.is_pilot &&
+    const uint64_t n = film.min_samples_done();
+    if (n > 0 && n == film.max_samples_done() && !film.is_pilot &&
         (!plan.is_adaptive || film.pilot == std::min(n, pilot_samples)))
         run.repeat_spp = double(n * plan.paths * samples_for_one(plan));
     return run;

@@ -40,7 +40,7 @@ struct View {
 // direction of density cos / pi, meets nothing within `far`.
 inline rgb occlusion(const Sight& s) {
     if (!s.x) return alike(1);
-    const vec2 u = s.at.sampler.get2(dimension(0, Draw::wi_x));
+    const vec2 u = s.at.sampler.get2(dimension(0, Dimension::wi_x));
     Ray ray = spawn(s.x->at, s.x->local.to_world(sample_cosine_hemisphere(u)));
     ray.tmax = s.far;
     return s.scene.bvh.occluded(ray) ? rgb{} : alike(1);

@@ -83,8 +83,8 @@ enum class Stop { no, samples, time, error, error_unknown, interrupt, not_finite
 
 // A film whose blocks have all come to a check.
 inline bool is_check_due(const Film& film) {
-    const uint64_t n = film.min_taken();
-    return n > 0 && n == film.max_taken() && !film.is_pilot && next_check(n - 1) == n;
+    const uint64_t n = film.min_samples_done();
+    return n > 0 && n == film.max_samples_done() && !film.is_pilot && next_check(n - 1) == n;
 }
 
 struct ErrorCheck {
@@ -98,7 +98,8 @@ inline ErrorCheck check_error(const Film& film, double wanted, const MayMissLigh
     const ImageError error = error_of(film);
     ErrorCheck check;
     if (std::isfinite(error.d_rel()))
-        check.expected = double(film.min_taken()) * square(std::max(1.0, error.d_rel() / wanted));
+        check.expected =
+            double(film.min_samples_done()) * square(std::max(1.0, error.d_rel() / wanted));
     const bool is_known = doubt_of(film, error, may_miss_light) == Doubt::no;
     if (is_known && is_small_enough(error, wanted)) check.stop = Stop::error;
     if (!is_known && film.samples_per_pixel() >= max_unknown) check.stop = Stop::error_unknown;

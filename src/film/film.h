@@ -61,7 +61,7 @@ struct Film {
     std::vector<Sum> sum = {};                // K of pixel 0, K of pixel 1 ...
     std::vector<uint8_t> weight = {};         // w of each pixel
     std::vector<float> pilot_deviation = {};  // root of the sum of squared deviations
-    std::vector<uint64_t> taken = {};         // n of each block of pixels
+    std::vector<uint64_t> samples_done = {};  // n of each block of pixels
     std::vector<NearMisses> near = {};        // groups of lights
 
     size_t pixels() const { return size_t(size.width) * size_t(size.height); }
@@ -74,11 +74,11 @@ struct Film {
 
     // Samples of each replication of a pixel, at n or more.
     uint64_t samples(size_t pixel, uint64_t n = 0) const {
-        return std::max(pilot, weight[pixel] * std::max(n, taken[pixel / block_size()]));
+        return std::max(pilot, weight[pixel] * std::max(n, samples_done[pixel / block_size()]));
     }
-    uint64_t min_taken() const { return *std::min_element(taken.begin(), taken.end()); }
-    uint64_t max_taken() const { return *std::max_element(taken.begin(), taken.end()); }
-    bool has_samples() const { return pilot + min_taken() > 0; }  // in all pixels
+    uint64_t min_samples_done() const { return std::ranges::min(samples_done); }
+    uint64_t max_samples_done() const { return std::ranges::max(samples_done); }
+    bool has_samples() const { return pilot + min_samples_done() > 0; }  // in all pixels
     PixelSample sample_of(size_t pixel, uint64_t s, uint32_t replication) const {
         const size_t width = size_t(size.width);
         return {int(pixel % width), first_row + int(pixel / width), s, replication};
@@ -97,7 +97,7 @@ inline Film make_film(Size size, uint32_t K, bool is_pilot, int first_row = 0) {
     film.sum.resize(film.pixels() * K);
     film.weight.assign(film.pixels(), 1);
     film.pilot_deviation.resize(is_pilot ? film.pixels() : 0);
-    film.taken.resize(film.blocks());
+    film.samples_done.resize(film.blocks());
     return film;
 }
 
@@ -182,7 +182,7 @@ inline void add_samples(Film& film, size_t block, uint64_t n, const SampleFuncti
     std::ranges::copy(sums, film.sum.begin() + ptrdiff_t(from * K));
     std::ranges::copy(deviation,
                       film.pilot_deviation.begin() + ptrdiff_t(film.is_pilot ? from : 0));
-    film.taken[block] = std::max(film.taken[block], n);
+    film.samples_done[block] = std::max(film.samples_done[block], n);
 }
 
 }  // namespace penumbra

@@ -82,8 +82,8 @@ private:
     Tally tally_;
 
     bool is_pilot_done() const {
-        const uint64_t n = film_.min_taken();
-        return film_.is_pilot && n >= pilot_ && n == film_.max_taken();
+        const uint64_t n = film_.min_samples_done();
+        return film_.is_pilot && n >= pilot_ && n == film_.max_samples_done();
     }
 
     Stop reason_to_stop() {
@@ -93,14 +93,14 @@ private:
             last_check_ = check_error(film_, plan_.error, plan_.may_miss_light);
             if (last_check_.stop != Stop::no) return last_check_.stop;
         }
-        if (!film_.is_pilot && film_.min_taken() >= limit_) return Stop::samples;
+        if (!film_.is_pilot && film_.min_samples_done() >= limit_) return Stop::samples;
         const bool is_over = plan_.seconds > 0 && watch_.elapsed() >= plan_.seconds;
         return is_over && film_.has_samples() ? Stop::time : Stop::no;
     }
 
     // Passes of the pilot have fixed ends, because deviations are rounded.
     uint64_t next_end() const {
-        const uint64_t n = film_.min_taken();
+        const uint64_t n = film_.min_samples_done();
         if (film_.is_pilot) return n + 1;
         const double elapsed = watch_.elapsed(), now = film_.samples_per_pixel();
         const double each = now > 0 ? elapsed / now * (film_.samples_per_pixel(n + 1) - now) : 0;
@@ -119,13 +119,13 @@ private:
         const unsigned workers = std::max(1u, plan_.threads);
         std::vector<Tally> of_worker(workers, nothing);
         auto add_block = [&](size_t block, unsigned worker) {
-            if (film_.taken[block] >= to) return;
+            if (film_.samples_done[block] >= to) return;
             Tally tally = nothing;  // of whole blocks only
             add_samples(film_, block, to, radiance_, tally);
             of_worker[worker].add(tally);
         };
         const bool is_whole = watch_.for_each(
-            film_.taken.size(), workers, add_block,
+            film_.samples_done.size(), workers, add_block,
             [&](double part) { watch_.show(before + part * (after - before), end); });
         for (const Tally& tally : of_worker) {
             tally_.add(tally);

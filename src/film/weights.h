@@ -60,8 +60,8 @@ inline void choose_weights(Film& film, const std::vector<size_t>& noisy = {}) {
     film.pilot_deviation = std::vector<float>();  // with its memory
     for (NearMisses& group : film.near) group.end_pilot();
     film.is_pilot = false;
-    film.pilot = film.taken[0];
-    film.taken.assign(film.taken.size(), 0);
+    film.pilot = film.samples_done[0];
+    film.samples_done.assign(film.samples_done.size(), 0);
 }
 
 }  // namespace penumbra

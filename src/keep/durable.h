@@ -25,8 +25,8 @@ inline bool is_stream(const std::string& path) {
 
 // The temporary file, ".NAME.HOST.partPROCESS" in the same folder, with a name of legal length.
 // Machines that share a folder may have processes of the same number.
-inline std::filesystem::path aside(const std::string& path,
-                                   const std::string& process = std::to_string(::getpid())) {
+inline std::filesystem::path temporary_path(
+    const std::string& path, const std::string& process = std::to_string(::getpid())) {
     char host[65] = "";
     ::gethostname(host, 64);
     const std::filesystem::path target = true_name(path);
@@ -36,7 +36,7 @@ inline std::filesystem::path aside(const std::string& path,
 
 // Removes temporary files of `path` that killed processes of this machine have left.
 inline void remove_stale(const std::string& path) {
-    const std::filesystem::path part = aside(path, "");
+    const std::filesystem::path part = temporary_path(path, "");
     const std::string start = part.filename().string();
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(part.parent_path(), ignored)) {
@@ -77,8 +77,9 @@ inline void check_writable(const std::string& path) {
         why.assign(::access(path.c_str(), W_OK) == 0 ? 0 : errno, std::generic_category());
     } else if (std::filesystem::status_known(status)) {
         remove_stale(path);
-        why.assign(put(aside(path), O_WRONLY | O_CREAT, {}, false), std::generic_category());
-        ::unlink(aside(path).c_str());
+        why.assign(put(temporary_path(path), O_WRONLY | O_CREAT, {}, false),
+                   std::generic_category());
+        ::unlink(temporary_path(path).c_str());
     }
     if (why) throw UserError(path + ": cannot write: " + why.message());
 }
@@ -92,12 +93,12 @@ inline void write_file(const std::string& path, const Pieces& pieces) {
         if (error != 0) throw SystemError(path + ": cannot write: " + std::strerror(error));
     };
     if (is_stream(path)) return check(put(path, O_WRONLY | O_APPEND, pieces, false));
-    const std::string name = true_name(path), part = aside(path);
+    const std::string name = true_name(path), part = temporary_path(path);
     int error = put(part, O_WRONLY | O_CREAT | O_TRUNC, pieces, true);
     if (error == 0 && std::rename(part.c_str(), name.c_str()) != 0) error = errno;
     if (error != 0) ::unlink(part.c_str());
     check(error);
-    error = put(aside(path).parent_path(), O_RDONLY | O_DIRECTORY, {}, true);
+    error = put(temporary_path(path).parent_path(), O_RDONLY | O_DIRECTORY, {}, true);
     check(error == EINVAL ? 0 : error);  // EINVAL: this file system cannot flush a folder
 }
 

@@ -156,9 +156,10 @@ inline Film film_but_sums(FilmReader& file, Size size) {
     if (bytes_of_sums == 0 || file.left() < bytes_of_sums) file.refuse("is too short for its size");
     f.is_pilot = file.said("weights-chosen") == "no";
     f.pilot = uint64_t(file.number("pilot", f.is_pilot ? 0 : double(pilot_samples)));
-    f.taken.resize(f.blocks()), f.weight.resize(n), f.pilot_deviation.resize(f.is_pilot ? n : 0);
+    f.samples_done.resize(f.blocks()), f.weight.resize(n),
+        f.pilot_deviation.resize(f.is_pilot ? n : 0);
     f.near.resize(size_t(file.number("light-groups", 1 << 10)));
-    file.read(std::as_writable_bytes(std::span(f.taken)));
+    file.read(std::as_writable_bytes(std::span(f.samples_done)));
     file.read(std::as_writable_bytes(std::span(f.weight)));
     file.read(std::as_writable_bytes(std::span(f.pilot_deviation)));
     file.read(std::as_writable_bytes(std::span(f.near)));
@@ -166,7 +167,7 @@ inline Film film_but_sums(FilmReader& file, Size size) {
         return !std::has_single_bit(w) || w > most;
     };
     if (std::ranges::any_of(f.weight, impossible) ||
-        f.max_taken() > (f.is_pilot ? pilot_samples : max_samples))
+        f.max_samples_done() > (f.is_pilot ? pilot_samples : max_samples))
         file.refuse("has a pixel with an impossible number of samples");
     if (file.left() != bytes_of_sums) file.refuse("its replications do not match its length");
     return f;

@@ -83,7 +83,7 @@ public:
     // film without samples replaces no file.
     std::string write(const Film& f, const Spent& spent, bool complete) const {
         if (path_.empty()) return "";
-        if (f.max_taken() + f.pilot == 0 && std::filesystem::exists(path_)) return "";
+        if (f.max_samples_done() + f.pilot == 0 && std::filesystem::exists(path_)) return "";
         try {
             Facts head = head_;
             head.insert(head.end(), {{"complete", complete ? "yes" : "no"},
@@ -94,10 +94,11 @@ public:
                                      {"weights-chosen", f.is_pilot ? "no" : "yes"},
                                      {"pilot", std::to_string(f.pilot)},
                                      {"light-groups", std::to_string(f.near.size())}});
-            write_film_file(path_, head,
-                            {std::as_bytes(std::span(f.taken)), std::as_bytes(std::span(f.weight)),
-                             std::as_bytes(std::span(f.pilot_deviation)),
-                             std::as_bytes(std::span(f.near)), std::as_bytes(std::span(f.sum))});
+            write_film_file(
+                path_, head,
+                {std::as_bytes(std::span(f.samples_done)), std::as_bytes(std::span(f.weight)),
+                 std::as_bytes(std::span(f.pilot_deviation)), std::as_bytes(std::span(f.near)),
+                 std::as_bytes(std::span(f.sum))});
             return "";
         } catch (const SystemError& e) {
             return e.what();

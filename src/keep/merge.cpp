@@ -56,7 +56,7 @@ Image merge(const std::vector<Part>& parts, Size size, Run& run) {
         double all = 0;
         for (const FilmPixels& f : films) all += f.film().samples_per_pixel();
         for (const FilmPixels& f : films)
-            unseen.add(f.film().near, double(f.film().min_taken()),
+            unseen.add(f.film().near, double(f.film().min_samples_done()),
                        f.film().samples_per_pixel() / all);
         for (int y = first; y <= last && !interrupted; ++y)
             for (int x = 0; x < size.width; ++x) {

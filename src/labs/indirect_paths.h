@@ -26,18 +26,18 @@ namespace penumbra {
 class EndlessNumbers {
 public:
     static constexpr int structured = 8;
-    static Pattern pattern(SamplerKind kind, uint64_t seed) {
-        return make_pattern(kind, seed, structured);
+    static SamplerSettings settings(SamplerKind kind, uint64_t seed) {
+        return sampler_settings(kind, seed, structured);
     }
-    static Pattern independent(uint64_t seed) {
-        return make_pattern(SamplerKind::independent, seed, 0);
+    static SamplerSettings independent(uint64_t seed) {
+        return sampler_settings(SamplerKind::independent, seed, 0);
     }
 
     EndlessNumbers(const Sampler& first, const Sampler& rest) : first_(first), rest_(rest) {}
     // Sample values of vertex k.
     const Sampler& operator[](int k) const { return k < structured ? first_ : rest_; }
     // The value that decides if the path continues at vertex k: the last one of vertex k - 1.
-    real xi(int k) const { return (*this)[k - 1].get(dimension(k - 1, Draw::roulette)); }
+    real xi(int k) const { return (*this)[k - 1].get(dimension(k - 1, Dimension::roulette)); }
 
 private:
     const Sampler first_, rest_;
@@ -51,7 +51,7 @@ struct Gather {
 
 // The probability to continue, 3/2 of the throughput.  It is below 1 in long paths, so that they
 // end between white walls.
-inline real probability(const Segment& s) {
+inline real probability(const PathState& s) {
     const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
     return std::min(most, max_of(s.beta) * real(1.5));
 }
@@ -59,18 +59,18 @@ inline real probability(const Segment& s) {
 // Radiance along a camera ray.  The path always continues at its first vertex.
 inline rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u) {
     rgb L;
-    for (Segment s{ray, ray.o};;) {
+    for (PathState s{ray, ray.o};;) {
         const real q = s.k > 0 ? probability(s) : 1;
         const bool goes = s.k == 0 || (q > 0 && u.xi(s.k) < q);
         // The weight of the maps' value: 1 - [xi < q] / q.
         const real weight = s.k == 0 ? 0 : goes ? 1 - 1 / q : 1;
         // At the scene's depth step() finds emission only.
-        Segment now = s;
+        PathState now = s;
         if (goes)
             now.beta /= q;
         else
             now.k = g.scene.depth;
-        const Step e = step(g.scene, g.technique, now, u[s.k]);
+        const VertexEvents e = step(g.scene, g.technique, now, u[s.k]);
         L += s.beta * e.Le * e.weight + now.beta * e.direct.L;
         if (e.met && weight != 0) L += s.beta * g.known.at(e.vertex) * weight;
         if (e.end != End::no) return L;
@@ -87,19 +87,19 @@ inline Rendered by_control(const NamedScene& read, uint64_t spp, uint64_t seed) 
     scene.depth = std::numeric_limits<int>::max();
     const auto [width, height] = scene.size;
     const uint64_t n = spp * uint64_t(width) * uint64_t(height) / 64 + 1;
-    Particles p(scene, room.mesh, Particles::pattern(SamplerKind::halton, hash(seed, 1)));
+    Particles p(scene, room.mesh, Particles::settings(SamplerKind::halton, hash(seed, 1)));
     walk(p, n);
     const KnownLight known = known_light(scene, room.mesh, p.map());
     const Gather g{scene, {Direction::bsdf, LightMode::mis, 0}, known};
-    const Pattern pattern = EndlessNumbers::pattern(SamplerKind::sobol, seed),
-                  rest = EndlessNumbers::independent(seed);
+    const SamplerSettings settings = EndlessNumbers::settings(SamplerKind::sobol, seed),
+                          rest = EndlessNumbers::independent(seed);
     Image image(width, height);
     auto row = [&](size_t y, unsigned) {
         for (int x = 0; x < image.width; ++x) {
             rgb sum;
             for (uint64_t i = 0; i < spp; ++i) {
                 const PixelSample s{x, int(y), i};
-                const Start at = start(scene, pattern, s);
+                const Start at = start(scene, settings, s);
                 sum += Li(g, at.ray, {at.sampler, Sampler(rest, pixel_number(scene, s), i)});
             }
             for (size_t c = 0; c < 3; ++c) image.at(x, int(y))[c] = float(sum.*axis[c] / real(spp));

@@ -47,7 +47,7 @@ Runs walks(const Room& room, double asked, uint64_t n) {
     o.quiet = true;
     for (uint64_t r = 0; r < n; ++r) {
         const auto p =
-            Particles::pattern(SamplerKind::halton, hash(r, std::bit_cast<uint64_t>(asked)));
+            Particles::settings(SamplerKind::halton, hash(r, std::bit_cast<uint64_t>(asked)));
         Walked w = walk_all(room.scene, room.mesh, p, {0, 0, asked}, o);
         runs.push_back(run_of(room, "particles", asked, w.stated.error,
                               {{"particles", double(w.particles)}}, std::move(w.map)));

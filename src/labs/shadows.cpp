@@ -27,14 +27,14 @@ constexpr uint64_t spp = 64;  // per estimate
 
 // Measures the green channel of a pixel with independent light samples.
 Pixel measure_pixel(const Scene& scene, PixelSample p, uint64_t trials) {
-    const Pattern pattern{SamplerKind::independent, 1};
+    const SamplerSettings settings{SamplerKind::independent, 1};
     Pixel pixel;
     ShadowMoments all;
     bool visible = false, occluded = false, dark = false;
     for (uint64_t t = 0; t < trials; ++t) {
         ShadowMoments m;
         for (uint64_t i = 0; i < spp; ++i) {
-            const Start at = start(scene, pattern, {p.x, p.y, t * spp + i});
+            const Start at = start(scene, settings, {p.x, p.y, t * spp + i});
             const Shadowed s = shadowed(scene, step(scene, {Direction::bsdf, LightMode::nee, 0},
                                                     {at.ray, at.ray.o}, at.sampler));
             m.add(double(s.U.y), double(s.w.y), double(s.wV.y));

@@ -1,4 +1,4 @@
-// many/arrivals.h  2  which lights the eye's surfaces see: a factor of their strengths
+// many/arrivals.h  2  which lights the eye's surfaces see: a factor of their intensities
 #pragma once
 #include "base/rng.h"
 #include "many/light_tree.h"
@@ -43,7 +43,7 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
     constexpr uint64_t max_tests = 1 << 18;  // of visibility: a tenth of a second or so
     std::vector<Arrival> arrivals(s.lights.size());
     if (s.lights.size() < 2 || s.lights.size() > max_tests / 16) return arrivals;
-    const LightTree tree(s.lights, strengths_of(s.lights));
+    const LightTree tree(s.lights, intensities_of(s.lights));
     for (uint64_t path = 0, tests = 0; path < paths && tests < max_tests; ++path) {
         uint64_t draws = 0;
         auto u = [&] { return to_unit(hash(path, draws++)); };
@@ -79,10 +79,10 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
 
 // Strengths count times the factor of what arrives.
 inline LightTree light_choice_for(const Scene& s) {
-    std::vector<double> strengths = strengths_of(s.lights);
+    std::vector<double> intensities = intensities_of(s.lights);
     const std::vector<Arrival> arrivals = arrivals_of(s);
-    for (size_t i = 0; i < strengths.size(); ++i) strengths[i] *= arrivals[i].factor();
-    return {s.lights, strengths};
+    for (size_t i = 0; i < intensities.size(); ++i) intensities[i] *= arrivals[i].factor();
+    return {s.lights, intensities};
 }
 
 }  // namespace penumbra

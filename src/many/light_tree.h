@@ -16,25 +16,25 @@ inline constexpr size_t max_members = 8;
 struct LightGroup {
     template <class T>
     using Row = std::array<T, max_members>;
-    Row<real> x{}, y{}, z{}, reach{}, spread2{}, axis_x{}, axis_y{}, axis_z{}, round{}, behind{},
-        twosided{}, strength{};
+    Row<real> x{}, y{}, z{}, radius{}, spread2{}, axis_x{}, axis_y{}, axis_z{}, round{}, behind{},
+        twosided{}, intensity{};
     Row<uint32_t> child{};  // the number of a group or light
     Row<bool> is_light{};
     uint32_t members = 0, parent = 0, place = 0;  // place among the parent's members
 
     // Unused places are below any horizon, and their d^2 is not 0.
-    LightGroup() { reach.fill(std::numeric_limits<real>::lowest()), spread2.fill(1); }
+    LightGroup() { radius.fill(std::numeric_limits<real>::lowest()), spread2.fill(1); }
     void add(const DistantLight& light) {
         const size_t k = members++;
         x[k] = light.centre.x, y[k] = light.centre.y, z[k] = light.centre.z;
-        reach[k] = light.reach, spread2[k] = light.spread2;
+        radius[k] = light.radius, spread2[k] = light.spread2;
         axis_x[k] = light.axis.x, axis_y[k] = light.axis.y, axis_z[k] = light.axis.z;
         round[k] = light.round, behind[k] = light.behind;
-        twosided[k] = light.twosided, strength[k] = light.strength;
+        twosided[k] = light.twosided, intensity[k] = light.intensity;
     }
     DistantLight member(size_t k) const {
-        return {{x[k], y[k], z[k]}, reach[k],  spread2[k],  {axis_x[k], axis_y[k], axis_z[k]},
-                round[k],           behind[k], twosided[k], strength[k]};
+        return {{x[k], y[k], z[k]}, radius[k], spread2[k],  {axis_x[k], axis_y[k], axis_z[k]},
+                round[k],           behind[k], twosided[k], intensity[k]};
     }
 };
 
@@ -78,10 +78,10 @@ inline std::pair<size_t, real> member_at(const LightGroup::Row<real>& share, rea
 class LightTree {
 public:
     LightTree() = default;
-    LightTree(const std::vector<Light>& lights, const std::vector<double>& strengths)
+    LightTree(const std::vector<Light>& lights, const std::vector<double>& intensities)
         : places_(lights.size()) {
         Part all;
-        for (const DistantLight& light : from_afar(lights, strengths))
+        for (const DistantLight& light : from_afar(lights, intensities))
             all.push_back({light, uint32_t(all.size())});
         if (lights.size() > 1) add_group(std::move(all), 0, 0);
     }
@@ -154,9 +154,9 @@ private:
 
     static DistantLight together(const Part& lights) {
         DistantLight g;
-        for (const Item& n : lights) g.strength += n.strength;
+        for (const Item& n : lights) g.intensity += n.intensity;
         auto part = [&](const Item& n) {
-            return g.strength > 0 ? n.strength / g.strength : 1 / real(lights.size());
+            return g.intensity > 0 ? n.intensity / g.intensity : 1 / real(lights.size());
         };
         bool is_flat = true;  // polygons of one side with the same normal: all may be turned away
         for (const Item& n : lights) {
@@ -168,23 +168,23 @@ private:
         for (const Item& n : lights) {
             const vec3 off = n.centre - g.centre;
             g.spread2 += (dot(off, off) + n.spread2) * part(n);
-            g.reach = std::max(g.reach, (length(off) + n.reach) * (1 + 8 * ulp));
+            g.radius = std::max(g.radius, (length(off) + n.radius) * (1 + 8 * ulp));
         }
         if (is_flat) g.axis = lights[0].axis;
         g.round = is_flat ? 0 : std::max(1 - length(g.axis), 8 * ulp);
-        g.behind = g.reach;
+        g.behind = g.radius;
         return g;
     }
 
-    // Lights of more than an eighth of the strength are members of their own.  The others are cut
+    // Lights of more than an eighth of the intensity are members of their own.  The others are cut
     // at medians of the longest axis.
     static std::vector<Part> parts_of(Part lights) {
         real sum = 0;
-        for (const Item& n : lights) sum += n.strength;
-        std::ranges::stable_sort(lights, std::ranges::greater{}, &Item::strength);
+        for (const Item& n : lights) sum += n.intensity;
+        std::ranges::stable_sort(lights, std::ranges::greater{}, &Item::intensity);
         std::vector<Part> parts;
         const size_t most = std::min(max_members, lights.size());
-        while (parts.size() + 1 < most && lights[parts.size()].strength > sum / max_members)
+        while (parts.size() + 1 < most && lights[parts.size()].intensity > sum / max_members)
             parts.push_back({lights[parts.size()]});
         lights.erase(lights.begin(), lights.begin() + ptrdiff_t(parts.size()));
         cut(std::move(lights), most - parts.size(), parts);

@@ -234,7 +234,7 @@ private:
             if (k >= vertices_.size()) throw no_vertex(std::to_string(uint64_t(k) + 1));
             c.push_back(vertices_[k]);
         }
-        auto is_near = [](vec3 p) { return is_finite(p) && double(max_abs(p)) <= longest_length; };
+        auto is_near = [](vec3 p) { return is_finite(p) && double(max_abs(p)) <= max_length; };
         if (c.size() < 3 || !std::ranges::all_of(c, is_near))
             return note({path_, "face", "left out", ": faces need three corners, near enough"},
                         face.line);

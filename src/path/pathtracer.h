@@ -88,10 +88,11 @@ PART DirectLight direct_light(const Scene& scene, const Technique& technique, co
     if (technique.light == LightMode::none) return none(Unlit::by_technique);
     if (scene.lights.empty()) return none(Unlit::without_lights);
     if (material.is_delta()) return none(Unlit::by_delta);
-    const real u_light = scene.lights.size() > 1 ? sampler.choice(k, Draw::which_light) : 0;
+    const real u_light = scene.lights.size() > 1 ? sampler.choice(k, Dimension::which_light) : 0;
     const auto chosen = scene.light_choice.choose(vertex.at.p, vertex.local.n, u_light);
     const Light& light = scene.lights[chosen.light];
-    const auto sample = sample_light(light, vertex.at.p, sampler.get2(dimension(k, Draw::light_x)));
+    const auto sample =
+        sample_light(light, vertex.at.p, sampler.get2(dimension(k, Dimension::light_x)));
     if (!sample) return none(Unlit::light_averted);
     const vec3 wi = vertex.local.to_local(sample->wi);
     const rgb f = eval(material, vertex.wo, wi);
@@ -112,7 +113,7 @@ PART DirectLight direct_light(const Scene& scene, const Technique& technique, co
 
 // The path so far, after k bounces.  Its last ray was sampled at the point `from` with density pdf
 // (infinite: by the camera, a mirror or glass).  Its radiance L contributes beta L to the eye.
-struct Segment {
+struct PathState {
     Ray ray;
     vec3 from;
     real pdf = infinity;
@@ -125,7 +126,7 @@ struct Segment {
 enum class End { no, leaves_scene, bounces, in_surface, reflects_nothing, roulette };
 
 // The events where that ray stopped.
-struct Step {
+struct VertexEvents {
     bool met = false;  // true if the ray met a surface, at the vertex
     Vertex vertex = {};
     rgb Le = {};                // emitted towards wo
@@ -134,93 +135,93 @@ struct Step {
     BsdfSample scattered = {};  // its wi is local
     vec3 wi = {};               // the same in world space
     End end = End::no;          // reason for termination
-    Segment next = {};          // the path so far, if it does not end here
+    PathState next = {};        // the path so far, if it does not end here
 };
 
 // MIS weight of emission that a BSDF sample has met, against light sampling.
 inline real weight_of_emission(const Scene& scene, const Technique& technique,
-                               const Segment& segment, const Vertex& vertex) {
+                               const PathState& path, const Vertex& vertex) {
     // exercise 3.4
-    if (technique.light == LightMode::none || std::isinf(segment.pdf)) return 1;
+    if (technique.light == LightMode::none || std::isinf(path.pdf)) return 1;
     const size_t i = size_t(scene.light_of[vertex.hit.id]);
-    const real probability = scene.light_choice.probability_of(i, segment.from, segment.n);
-    const real pdf = probability * pdf_light(scene.lights[i], segment.from, vertex.at);
+    const real probability = scene.light_choice.probability_of(i, path.from, path.n);
+    const real pdf = probability * pdf_light(scene.lights[i], path.from, vertex.at);
     // Light samples have pdf 0 inside a two-sided sphere light.
     if (technique.light == LightMode::nee) return pdf > 0 ? 0 : 1;
-    return power_heuristic(segment.pdf, pdf);
+    return power_heuristic(path.pdf, pdf);
     // end
 }
 
 // The rendering equation (Kajiya 1986) at one vertex x:
 //   L(x, wo) = Le(x, wo) + integral over wi of f(x, wo, wi) L(y, -wi) |cos| dwi.
 // One direction estimates the integral; one light sample also estimates the direct light.
-PART Step step(const Scene& scene, const Technique& technique, const Segment& segment,
-               const Sampler& sampler) {
-    Step here;
+PART VertexEvents step(const Scene& scene, const Technique& technique, const PathState& path,
+                       const Sampler& sampler) {
+    VertexEvents here;
     auto ends = [&here](bool reached, End why) {
         if (reached) here.end = why;
         return reached;
     };
-    const auto hit = scene.bvh.closest(segment.ray);
+    const auto hit = scene.bvh.closest(path.ray);
     if (ends(!hit, End::leaves_scene)) return here;
     here.met = true;
-    const Vertex& vertex = here.vertex = vertex_of(scene, segment.ray, *hit);
+    const Vertex& vertex = here.vertex = vertex_of(scene, path.ray, *hit);
     const Material& material = *vertex.material;
     if (material.emits()) {
         here.Le = emitted(material, vertex.cos_o);
-        here.weight = weight_of_emission(scene, technique, segment, vertex);
+        here.weight = weight_of_emission(scene, technique, path, vertex);
     }
-    if (ends(segment.k == scene.depth, End::bounces)) return here;
+    if (ends(path.k == scene.depth, End::bounces)) return here;
     if (ends(vertex.cos_o == 0, End::in_surface)) return here;
-    here.direct = direct_light(scene, technique, vertex, sampler, segment.k);
+    here.direct = direct_light(scene, technique, vertex, sampler, path.k);
 
-    const vec2 u = sampler.get2(dimension(segment.k, Draw::wi_x));
-    const real u_lobe = material.has_choice() ? sampler.choice(segment.k, Draw::lobe) : 0;
+    const vec2 u = sampler.get2(dimension(path.k, Dimension::wi_x));
+    const real u_lobe = material.has_choice() ? sampler.choice(path.k, Dimension::lobe) : 0;
     const BsdfSample& scattered = here.scattered =
         sample(material, vertex.wo, vertex.cos_o > 0, u_lobe, u, technique.direction);
     here.wi = vertex.local.to_world(scattered.wi);
     if (ends(max_of(scattered.f) <= 0, End::reflects_nothing)) return here;
     // exercise 3.2
     // The product of f |cos| / pdf over all bounces.
-    rgb beta = segment.beta * (scattered.f * (std::abs(scattered.wi.z) / scattered.pdf));
+    rgb beta = path.beta * (scattered.f * (std::abs(scattered.wi.z) / scattered.pdf));
     // end
     // Light that leaves glass gives eta2 back: beta / eta2 counts (Pharr et al. 2023, sec. 14.5.4).
-    const real eta2 = segment.eta2 * scattered.eta2, threshold = technique.roulette * eta2;
+    const real eta2 = path.eta2 * scattered.eta2, threshold = technique.roulette * eta2;
     // exercise 3.5
     // Arvo, Kirk 1990.  Surviving paths have a throughput of at least the threshold.
     if (max_of(beta) < threshold) {
         const real survival = max_of(beta) / threshold;
-        const real u_survival = sampler.get(dimension(segment.k, Draw::roulette));
+        const real u_survival = sampler.get(dimension(path.k, Dimension::roulette));
         if (ends(u_survival >= survival, End::roulette)) return here;
         beta /= survival;
     }
     // end
     const real pdf = material.is_delta() ? infinity : scattered.pdf;
     here.next = {
-        spawn(vertex.at, here.wi), vertex.at.p, pdf, beta, segment.k + 1, vertex.local.n, eta2};
+        spawn(vertex.at, here.wi), vertex.at.p, pdf, beta, path.k + 1, vertex.local.n, eta2};
     return here;
 }
 
 // ---- The path -----------------------------------------------------------------------------------
 
 struct NoVisitor {
-    void operator()(const Segment&, const Step&) const {}
+    void operator()(const PathState&, const VertexEvents&) const {}
 };
 
 // Radiance that arrives along a ray, against its direction.  Unbiased, except for the scene's
-// depth.  Calls visit(segment, step) at every vertex.
+// depth.  Calls visit(path, vertex events) at every vertex.
 template <class Visitor = NoVisitor>
 rgb Li(const Scene& scene, const Technique& technique, const Ray& ray, const Sampler& sampler,
        Visitor visit = {}) {
     // exercise 3.1
     rgb L;
-    for (Segment segment{ray, ray.o};;) {
-        const Step here = step(scene, technique, segment, sampler);
-        L += segment.beta * here.Le * here.weight;
-        L += segment.beta * here.direct.L;
-        visit(segment, here);
+    for (PathState path{ray, ray.o};;) {
+        const VertexEvents here = step(scene, technique, path, sampler);
+        L += path.beta * here.Le * here.weight;
+        L += path.beta * here.direct.L;
+        visit(path, here);
         if (here.end != End::no) return L;
-        segment = here.next;
+        path = here.next;
     }
     // end
 }

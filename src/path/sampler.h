@@ -11,13 +11,14 @@
 namespace penumbra {
 
 // Dimensions of the numbers of a path: dimension(k, what) at vertex k; the first surface has k = 0.
-enum class Draw { light_x, light_y, wi_x, wi_y, which_light, lobe, roulette, count };
+enum class Dimension { light_x, light_y, wi_x, wi_y, which_light, lobe, roulette, count };
 inline constexpr uint32_t film_x = 0, film_y = 1;
-inline constexpr uint32_t dimension(int k, Draw what) {
-    return 2 + uint32_t(k) * uint32_t(Draw::count) + uint32_t(what);
+inline constexpr uint32_t dimension(int k, Dimension what) {
+    return 2 + uint32_t(k) * uint32_t(Dimension::count) + uint32_t(what);
 }
-static_assert(dimension(0, Draw::light_y) == dimension(0, Draw::light_x) + 1);  // pairs, see get2
-static_assert(dimension(0, Draw::wi_y) == dimension(0, Draw::wi_x) + 1);
+static_assert(dimension(0, Dimension::light_y) ==
+              dimension(0, Dimension::light_x) + 1);  // pairs, see get2
+static_assert(dimension(0, Dimension::wi_y) == dimension(0, Dimension::wi_x) + 1);
 
 // ---- Strata -------------------------------------------------------------------------------------
 
@@ -123,17 +124,18 @@ inline SamplePoints points_of(SamplerKind kind, const PathKey& path) {
 // ---- The sampler of a path ----------------------------------------------------------------------
 
 // Parameters that the samplers of all paths share.
-struct Pattern {
+struct SamplerSettings {
     SamplerKind kind = SamplerKind::sobol;
     uint64_t seed = 0;
     std::vector<uint32_t> bases = {};  // halton: one prime per dimension
 };
 
 // For paths of up to `depth` bounces.
-inline Pattern make_pattern(SamplerKind kind, uint64_t seed, int depth) {
-    Pattern pattern{kind, seed};
-    if (kind == SamplerKind::halton) pattern.bases = first_primes(dimension(depth, Draw::light_x));
-    return pattern;
+inline SamplerSettings sampler_settings(SamplerKind kind, uint64_t seed, int depth) {
+    SamplerSettings settings{kind, seed};
+    if (kind == SamplerKind::halton)
+        settings.bases = first_primes(dimension(depth, Dimension::light_x));
+    return settings;
 }
 
 inline constexpr uint64_t max_samples = uint64_t(1) << 40;  // of each replication
@@ -147,13 +149,13 @@ struct PixelSample {
 
 // The numbers in [0,1) of one sample of one pixel.  They depend only on (seed, pixel, replication,
 // sample, dimension): any thread may draw any path at any time.  Each replication of a pixel
-// has a randomisation of its own.
+// has a randomisation of its own.  The settings must outlive it.
 class Sampler {
 public:
-    Sampler(const Pattern& p, uint64_t pixel, uint64_t sample, uint32_t replication = 0)
+    Sampler(const SamplerSettings& p, uint64_t pixel, uint64_t sample, uint32_t replication = 0)
         : points_(points_of(p.kind,
                             {sample, hash(hash(hash(0, p.seed), pixel), replication), p.bases})) {}
-    Sampler(const Pattern&&, uint64_t, uint64_t, uint32_t = 0) = delete;  // it would be gone
+    Sampler(const SamplerSettings&&, uint64_t, uint64_t, uint32_t = 0) = delete;
 
     real get(uint32_t dim) const {
         return std::visit([&](const auto& points) { return points.get(dim); }, points_);
@@ -170,8 +172,9 @@ public:
     }
 
     // The number that chooses the light or the lobe; the pair of the same vertex samples it.
-    real choice(int k, Draw what) const {
-        const uint32_t pair = dimension(k, what == Draw::which_light ? Draw::light_x : Draw::wi_x);
+    real choice(int k, Dimension what) const {
+        const uint32_t pair =
+            dimension(k, what == Dimension::which_light ? Dimension::light_x : Dimension::wi_x);
         auto third = [&](const auto& points) {
             if constexpr (requires { points.choice(pair); }) return points.choice(pair);
             return points.get(dimension(k, what));

@@ -188,7 +188,7 @@ inline Faceted faceted(const NamedScene& from, double H) {
 // in the mean of all directions (Cauchy 1841).
 inline double power(const Light& l) {
     const int sides = l.is_round() ? 4 : l.twosided ? 2 : 1;
-    return sides * strength(l, std::numbers::pi);
+    return sides * intensity(l, std::numbers::pi);
 }
 
 }  // namespace penumbra

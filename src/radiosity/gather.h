@@ -28,15 +28,16 @@ inline KnownLight known_light(const Scene& s, Mesh mesh, IlluminationMap map) {
 // The function that renders a sample.  The scene's depth is 1: paths add emission and light samples
 // as usual, and the radiance of the maps where they end.
 inline SampleFunction final_gather(const Scene& scene, const Technique& t, const KnownLight& known,
-                                   const Pattern& pattern) {
-    return [=, &scene, &known, &pattern](const PixelSample& s, Tally& tally) {
-        const Start at = start(scene, pattern, s);
+                                   const SamplerSettings& settings) {
+    return [=, &scene, &known, &settings](const PixelSample& s, Tally& tally) {
+        const Start at = start(scene, settings, s);
         rgb R;
-        const rgb L = Li(scene, t, at.ray, at.sampler, [&](const Segment& segment, const Step& e) {
-            if (interrupted) throw Interrupted();
-            tally.rays += 1 + (e.direct.light != nullptr);
-            if (segment.k == 1 && e.met) R = segment.beta * known.at(e.vertex);
-        });
+        const rgb L =
+            Li(scene, t, at.ray, at.sampler, [&](const PathState& path, const VertexEvents& e) {
+                if (interrupted) throw Interrupted();
+                tally.rays += 1 + (e.direct.light != nullptr);
+                if (path.k == 1 && e.met) R = path.beta * known.at(e.vertex);
+            });
         return L + R;
     };
 }

@@ -45,10 +45,10 @@ struct Missing {
 
     // Bound on the RMS of the missing light over surfaces and channels, relative to the limit: 1
     // while E is 0.
-    double error(rgb most_reflected) const {
+    double error(rgb max_reflected) const {
         double b2 = 0;
         for (size_t k = 0; k < 3; ++k) {
-            const double absorbed = 1 - double(most_reflected.*axis[k]);
+            const double absorbed = 1 - double(max_reflected.*axis[k]);
             if (unsent[k] > 0) b2 += unsent[k] / (absorbed * absorbed);
         }
         return b2 == 0 ? 0 : std::isinf(b2) ? 1 : std::sqrt(b2 / (light + b2));

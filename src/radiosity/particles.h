@@ -26,8 +26,9 @@ class WalkNumbers {
 public:
     static constexpr uint32_t which_light = 0, point = 1, direction = 3, side = 5, structured = 8;
 
-    WalkNumbers(const Pattern& pattern, const Pattern& independent, uint64_t batch, uint64_t i)
-        : first_(pattern, batch, i), independent_(independent), batch_(batch), i_(i) {}
+    WalkNumbers(const SamplerSettings& settings, const SamplerSettings& independent, uint64_t batch,
+                uint64_t i)
+        : first_(settings, batch, i), independent_(independent), batch_(batch), i_(i) {}
 
     real start(uint32_t what) const { return first_.get(what); }
     vec2 start2(uint32_t what) const { return first_.get2(what); }
@@ -36,7 +37,7 @@ public:
 
 private:
     const Sampler first_;
-    const Pattern& independent_;
+    const SamplerSettings& independent_;
     const uint64_t batch_, i_;
     Sampler of(uint32_t k) const {
         return k < structured ? first_ : Sampler(independent_, batch_, i_);
@@ -91,7 +92,7 @@ inline Particle emit(const Scene& scene, const LightsByPower& lights, const Walk
     Surface y = point_of(l, at);
     if (l.twosided && u.start(WalkNumbers::side) >= real(0.5)) y.n = -y.n;
     const vec3 w = frame(y.n).to_world(sample_cosine_hemisphere(d));
-    const real area = real(l.ask([](const auto& kind) { return kind.strength(1); }));
+    const real area = real(l.ask([](const auto& kind) { return kind.intensity(1); }));
     return {spawn(y, w), pi * area * (l.twosided ? 2 : 1) * l.L / probability};
 }
 
@@ -138,25 +139,27 @@ public:
     static constexpr int batches = 16;
 
     // Both must outlive it.
-    Particles(const Scene& scene, const Mesh& mesh, const Pattern& pattern)
+    Particles(const Scene& scene, const Mesh& mesh, const SamplerSettings& settings)
         : scene_(scene),
           lights_(scene.lights),
           mesh_(mesh),
-          pattern_(pattern),
-          independent_(make_pattern(SamplerKind::independent, pattern.seed, 0)),
+          settings_(settings),
+          independent_(sampler_settings(SamplerKind::independent, settings.seed, 0)),
           batch_(batches, Batch{std::vector<Sum>(number_of_sides(mesh)), {}, 0, 0}) {}
 
     // Every batch has as many.
     static uint64_t of_each(uint64_t samples) { return (samples + batches - 1) / batches; }
 
-    // Pattern of as many dimensions as the numbers of a walk have.
-    static Pattern pattern(SamplerKind kind, uint64_t seed) { return make_pattern(kind, seed, 5); }
+    // SamplerSettings of as many dimensions as the numbers of a walk have.
+    static SamplerSettings settings(SamplerKind kind, uint64_t seed) {
+        return sampler_settings(kind, seed, 5);
+    }
 
     // Traces n more particles of a batch, or fewer after Ctrl-C.
     void add(size_t batch, uint64_t n) {
         Batch& b = batch_[batch];
         for (const uint64_t end = b.n + n; b.n < end && !interrupted; ++b.n) {
-            const WalkNumbers u(pattern_, independent_, uint64_t(batch), b.n);
+            const WalkNumbers u(settings_, independent_, uint64_t(batch), b.n);
             Balance one;
             rgb kept{1, 1, 1};  // part that the surfaces reflect
             b.rays += walk(scene_, lights_, u, one, [&](const Vertex& x, rgb power) {
@@ -269,7 +272,7 @@ private:
     const Scene& scene_;
     const LightsByPower lights_;
     const Mesh& mesh_;
-    const Pattern pattern_, independent_;
+    const SamplerSettings settings_, independent_;
     std::vector<Batch> batch_;
 
     static double sum_of(rgb x) { return double(x.x) + double(x.y) + double(x.z); }

@@ -81,8 +81,8 @@ int gather(const RadiosityOptions& o, const OptionTable& table, Stage& stage,
     RadiosityOptions rest = o;
     if (o.seconds > 0) rest.seconds = std::max(1e-9, o.seconds - seconds);
     scene.depth = 1;
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
-    const SampleFunction L = final_gather(scene, o.technique, known, pattern);
+    const SamplerSettings settings = sampler_settings(o.sampler, o.seed, scene.depth);
+    const SampleFunction L = final_gather(scene, o.technique, known, settings);
     Picture picture = render(rest, plan_of(rest, scene), L);
     picture.run.seconds += seconds, picture.run.rays += s.rays;
     picture.run.bias = "biased";

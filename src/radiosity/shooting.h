@@ -31,7 +31,7 @@ public:
           radiance_(tree_.first(mesh.faces.size())),
           best_(2 * mesh.faces.size()),
           order_(mesh.faces.size()),
-          most_reflected_(greatest_albedo(scene, mesh)) {
+          max_reflected_(greatest_albedo(scene, mesh)) {
         for (uint32_t side = 0; side < best_.size(); ++side) best_[side] = candidate(side);
         std::iota(order_.begin(), order_.end(), 0u);
         std::stable_sort(order_.begin(), order_.end(), [&](uint32_t a, uint32_t b) {
@@ -56,7 +56,7 @@ public:
         Missing all;
         for (const Candidate& c : best_) all.add(c.missing);
         all.lose(lost_);
-        return all.error(most_reflected_);
+        return all.error(max_reflected_);
     }
 
     // Shoots until the target is met, nothing is left or `interrupted`; may be called again for a
@@ -115,7 +115,7 @@ private:
     std::vector<Corners> radiance_;  // radiance of the nodes of the side that shoots
     std::vector<Candidate> best_;
     std::vector<uint32_t> order_;  // faces, the largest first, so that threads end together
-    const rgb most_reflected_;     // greatest albedo of all faces
+    const rgb max_reflected_;      // greatest albedo of all faces
     std::vector<const Light*> points_;
     size_t next_point_ = 0;
     double emitted_ = 0, area_ = 0, seconds_ = 0;  // power; of both sides of all faces
@@ -254,7 +254,7 @@ private:
         const Node& node = tree_[i];
         const Corners& L = radiance_[i];
         if (behind(to, node)) return {};
-        if (shooter_ == Shooter::face && most_from(to, node, mean_of(L.mean())) < faint_to(to)) {
+        if (shooter_ == Shooter::face && max_from(to, node, mean_of(L.mean())) < faint_to(to)) {
             if (to.E > 0) return transfer.from_whole(to, from, node, L.mean(), 1);
             if (transfer.visible_part(to, from, node, 4) == 0) return {};
         }

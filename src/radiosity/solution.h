@@ -85,8 +85,8 @@ inline Solution shoot(const RadiosityOptions& o, const Stage& stage) {
 
 inline Solution walk(const RadiosityOptions& o, const Stage& stage, SamplerKind kind, uint64_t seed,
                      const WalksTarget& target) {
-    const Pattern pattern = Particles::pattern(kind, seed);
-    Walked w = walk_all(stage.scene, stage.mesh, pattern, target, o);
+    const SamplerSettings settings = Particles::settings(kind, seed);
+    Walked w = walk_all(stage.scene, stage.mesh, settings, target, o);
     Solution s{std::move(w.map)};
     s.particles = w.particles, s.rays = w.rays, s.stated = w.stated, s.seconds = w.seconds;
     return s;

@@ -31,7 +31,7 @@ inline bool near(const Receiver& to, const Node& node, real radii) {
 }
 
 // pi L (r / d)^2 is about the most that a node of radius r sends.
-inline real most_from(const Receiver& to, const Node& node, real L) {
+inline real max_from(const Receiver& to, const Node& node, real L) {
     const vec3 d = node.centre - to.x.p;
     return pi * L * std::min(real(1), sqr(node.radius) / dot(d, d));
 }

@@ -70,9 +70,12 @@ struct Walked {
 class Walks {
 public:
     // All arguments except the target must outlive it.
-    Walks(const Scene& scene, const Mesh& mesh, const Pattern& pattern, const WalksTarget& target,
-          const CommonOptions& o)
-        : target_(target), o_(o), particles_(scene, mesh, pattern), bar_(target.seconds, o.quiet) {}
+    Walks(const Scene& scene, const Mesh& mesh, const SamplerSettings& settings,
+          const WalksTarget& target, const CommonOptions& o)
+        : target_(target),
+          o_(o),
+          particles_(scene, mesh, settings),
+          bar_(target.seconds, o.quiet) {}
 
     // Until the target is met, or `interrupted`.
     void run() {
@@ -145,9 +148,9 @@ private:
 };
 
 // Without light there are no particles.
-inline Walked walk_all(const Scene& scene, const Mesh& mesh, const Pattern& pattern,
+inline Walked walk_all(const Scene& scene, const Mesh& mesh, const SamplerSettings& settings,
                        const WalksTarget& target, const CommonOptions& o) {
-    Walks walks(scene, mesh, pattern, target, o);
+    Walks walks(scene, mesh, settings, target, o);
     if (!scene.lights.empty()) walks.run();
     return walks.walked();
 }

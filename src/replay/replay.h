@@ -73,7 +73,7 @@ public:
     }
 
     // A vertex, as a visitor of Li.
-    void operator()(const Segment& s, const Step& e) const {
+    void operator()(const PathState& s, const VertexEvents& e) const {
         if (!e.met) return;
         const Vertex& x = e.vertex;
         std::fprintf(out_, "vertex %d: shape %u%s at distance %.17g\n", s.k, x.hit.id,
@@ -133,22 +133,24 @@ private:
 
 // Prints one path of the image, and what a view shows of it, if there is one; throws UserError if
 // its pixel is outside.
-inline void replay(const NamedScene& scene, const Technique& technique, const Pattern& pattern,
-                   const PixelSample& which, const std::function<rgb(const Start&)>& view) {
+inline void replay(const NamedScene& scene, const Technique& technique,
+                   const SamplerSettings& settings, const PixelSample& which,
+                   const std::function<rgb(const Start&)>& view) {
     if (which.x >= scene.size.width || which.y >= scene.size.height)
         throw UserError("--pixel: outside the image");
     const PathLog log(scene, stdout);
-    const Start at = start(scene, pattern, which);
+    const Start at = start(scene, settings, which);
     std::printf("pixel %d,%d, sample %llu of replication %u, seed %llu\n", which.x, which.y,
                 static_cast<unsigned long long>(which.i), which.replication,
-                static_cast<unsigned long long>(pattern.seed));
+                static_cast<unsigned long long>(settings.seed));
     log.film(at);
     if (view) return log.end("a view, not radiance", view(at));
     End why = End::no;
-    const rgb L = Li(scene, technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
-        log(s, e);
-        why = e.end;
-    });
+    const rgb L =
+        Li(scene, technique, at.ray, at.sampler, [&](const PathState& s, const VertexEvents& e) {
+            log(s, e);
+            why = e.end;
+        });
     log.end(in_words(why), L);
 }
 

@@ -63,11 +63,11 @@ int shadow(const std::vector<std::string>& words) {
     const ParsedScene parsed = load(o);
     const Scene& scene = parsed.scene;
     const Plan plan = plan_at_once(o, scene);
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
+    const SamplerSettings settings = sampler_settings(o.sampler, o.seed, scene.depth);
     const auto outputs = outputs_of(o, parsed, "-shadow", plan.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
-    const SampleFunction L = shadow_estimate(scene, o.technique, pattern, o.estimator, plan.paths);
+    const SampleFunction L = shadow_estimate(scene, o.technique, settings, o.estimator, plan.paths);
     Picture picture = render(o, plan, L);
     if (interrupted) picture.run.spp = 0;
     if (estimates_pixels(o.estimator)) picture.run.bias = "consistent";

@@ -28,7 +28,7 @@ inline bool has_closed_form(const Light& l, const Surface& x) {
     const real error = 2 * (x.error + l.error);
     const vec3 p = x.p - l.p;
     if (l.is_delta()) return false;
-    return l.is_round() ? dot(p, p) > sqr(l.reach + error) : std::abs(dot(l.n, p)) > error;
+    return l.is_round() ? dot(p, p) > sqr(l.radius + error) : std::abs(dot(l.n, p)) > error;
 }
 
 // Irradiance by a light at p from a surface, at radiance 1.  Of these kinds alone, not of
@@ -66,7 +66,7 @@ inline rgb unshadowed(const Scene& scene, const Material& m, const Surface& x, c
 // ---- One sample ---------------------------------------------------------------------------------
 
 // For the first vertex of a path, without BSDF sampling of direct light: LightMode::nee.
-inline Shadowed shadowed(const Scene& scene, const Step& e) {
+inline Shadowed shadowed(const Scene& scene, const VertexEvents& e) {
     if (!e.met || scene.depth == 0 || e.vertex.cos_o == 0 || e.vertex.material->is_delta())
         return {};
     const Vertex& x = e.vertex;
@@ -89,7 +89,7 @@ struct ShadowSample {
 template <class Visitor>
 ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, Visitor visit) {
     ShadowSample sample;
-    Li(scene, t, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
+    Li(scene, t, at.ray, at.sampler, [&](const PathState& s, const VertexEvents& e) {
         auto& [rest, first] = sample;
         rest += s.beta * e.Le * e.weight;
         if (s.k == 0) first = shadowed(scene, e);
@@ -125,12 +125,12 @@ struct ShadowPixel {
 
 // The function that renders a sample of the film: the estimate by all n paths of a replication.
 inline SampleFunction shadow_estimate(const Scene& scene, const Technique& t,
-                                      const Pattern& pattern, Estimator e, uint64_t n) {
-    return [=, &scene, &pattern](PixelSample s, Tally& tally) {
+                                      const SamplerSettings& settings, Estimator e, uint64_t n) {
+    return [=, &scene, &settings](PixelSample s, Tally& tally) {
         ShadowPixel pixel;
         for (s.i = 0; s.i < n; ++s.i) {
-            const Start at = start(scene, pattern, s);
-            auto count = [&tally](const Segment&, const Step& step) {
+            const Start at = start(scene, settings, s);
+            auto count = [&tally](const PathState&, const VertexEvents& step) {
                 if (interrupted) throw Interrupted();
                 tally.rays += 1 + (step.direct.light != nullptr);
             };

@@ -7,7 +7,7 @@
 namespace penumbra {
 
 // Coordinates are no larger: their fourth powers must neither overflow nor vanish.
-inline constexpr double longest_length = sizeof(real) == 4 ? 1e9 : 1e30;
+inline constexpr double max_length = sizeof(real) == 4 ? 1e9 : 1e30;
 
 // A mesh is scaled, its z axis made the y axis if that is up, turned about y as boxes are, moved.
 struct MeshPlacement {

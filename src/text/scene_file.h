@@ -113,19 +113,19 @@ public:
     // ---- Words, for the readers of statements --------------------------------------------------
 
     std::string last() const { return in_quotes(words_[next_ - 1]); }  // word read
-    real number(double most = largest_number) { return real(parse_number(words_[next_++], most)); }
-    real positive(const std::string& what, double most = largest_number) {
+    real number(double most = max_number) { return real(parse_number(words_[next_++], most)); }
+    real positive(const std::string& what, double most = max_number) {
         const real x = number(most);
         if (!(x > 0)) throw UserError(what + " must be positive, not " + last());
         return x;
     }
     real length_of(const std::string& what) {
-        const real x = positive(what, longest_length);
-        if (double(x) < 1 / longest_length) throw UserError(what + " is too small: " + last());
+        const real x = positive(what, max_length);
+        if (double(x) < 1 / max_length) throw UserError(what + " is too small: " + last());
         return x;
     }
     vec3 point() {
-        real x = number(longest_length), y = number(longest_length), z = number(longest_length);
+        real x = number(max_length), y = number(max_length), z = number(max_length);
         return {x, y, z};
     }
     rgb colour() {

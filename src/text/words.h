@@ -54,8 +54,8 @@ inline std::string in_quotes(std::string_view word) {
 // statement or option needs more than 1e30, and float holds it.  strtod rounds correctly, and reads
 // '.' because no program sets a locale.  It accepts leading blanks and hexadecimal digits; we do
 // not.
-inline constexpr double largest_number = 1e30;
-inline double parse_number(std::string_view text, double largest = largest_number) {
+inline constexpr double max_number = 1e30;
+inline double parse_number(std::string_view text, double largest = max_number) {
     const std::string word(text);
     char* end = nullptr;
     const double x = std::strtod(word.c_str(), &end);

@@ -90,7 +90,7 @@ public:
     }
     real pdf(vec3 y, vec3 d) const {
         const vec3 to_centre = as_light_.centre - y, across = to_centre - d * dot(to_centre, d);
-        if (dot(across, across) > sqr(as_light_.reach * real(1.001))) return 0;  // 1.001: rounding
+        if (dot(across, across) > sqr(as_light_.radius * real(1.001))) return 0;  // 1.001: rounding
         const Ray ray{y, d};
         const auto hit = intersect(shape_, ray, shear(d), infinity);
         return hit ? pdf_light(as_light_, y, surface(shape_, ray, *hit)) : 0;

@@ -16,7 +16,7 @@
 
 namespace penumbra {
 
-inline constexpr int most_bounces = 32;  // white walls would hold a path for ever
+inline constexpr int max_bounces = 32;  // white walls would hold a path for ever
 inline constexpr size_t max_light_groups = 256;
 
 // The group of each light.  Of more lights than groups the brighter half of the groups has one
@@ -118,7 +118,7 @@ inline Emission emission(const Light& l, const Aims& aims, Draws& u) {
     const Surface from = point_of(l, u.two());
     const bool is_point = l.is_delta(), is_turned = l.twosided && u.one() < real(0.5);
     const vec3 n = is_turned ? -from.n : from.n;
-    const real area = l.is_round() ? 4 * pi * sqr(l.reach) : 1 / l.pdf_area;
+    const real area = l.is_round() ? 4 * pi * sqr(l.radius) : 1 / l.pdf_area;
     const real aimed = aims.size() == 0 ? 0 : real(0.5), u_kind = u.one(), u_aim = u.one();
     const vec2 at = u.two();
     const auto aim = u_kind < aimed ? aims.sample(from.p, u_aim, at) : std::nullopt;
@@ -135,14 +135,14 @@ inline Emission emission(const Light& l, const Aims& aims, Draws& u) {
 }
 
 // A path from a light, from its emission.  Calls splat(pixel, radiance) where the eye sees it: the
-// mean radiance of the pixel, by this path.  Unbiased for what paths of up to most_bounces from the
+// mean radiance of the pixel, by this path.  Unbiased for what paths of up to max_bounces from the
 // eye find behind a first surface that is no mirror or glass.
 template <class Splat>
 void follow_light(const Scene& s, const Band& band, const Light& l, const Emission& emitted,
                   Draws& u, Splat splat) {
     Ray ray = emitted.ray;
     rgb flux = emitted.flux;
-    for (int k = 0; k < std::min(s.depth, most_bounces) && max_of(flux) > 0; ++k) {
+    for (int k = 0; k < std::min(s.depth, max_bounces) && max_of(flux) > 0; ++k) {
         const auto hit = s.bvh.closest(ray);
         if (!hit) return;
         const Surface x = s.surface(ray, *hit);
@@ -176,18 +176,18 @@ inline uint64_t aimed_paths(const Scene& s, const Band& band) {
 }
 
 // What each group of lights sends to the picture, by so many paths, half of which the lights share
-// alike and half by their strengths.  Half of the paths learn where to aim, the others count.
+// alike and half by their intensities.  Half of the paths learn where to aim, the others count.
 inline PictureSums sent_by_lights(const Scene& s, const Band& band, Aims aims, uint64_t paths) {
     PictureSums sums(std::min(s.lights.size(), max_light_groups));
     const std::vector<size_t> group_of = light_groups(s);
     double most = std::numeric_limits<double>::min(), all = 0;
-    for (const Light& l : s.lights) most = std::max(most, strength(l));
-    for (const Light& l : s.lights) all += strength(l, 1 / most);
+    for (const Light& l : s.lights) most = std::max(most, intensity(l));
+    for (const Light& l : s.lights) all += intensity(l, 1 / most);
     if (!(all > 0)) return sums;
     std::vector<double> upto;  // sums of probabilities
     for (const Light& l : s.lights)
         upto.push_back((upto.empty() ? 0 : upto.back()) + 0.5 / double(s.lights.size()) +
-                       0.5 * strength(l, 1 / most) / all);
+                       0.5 * intensity(l, 1 / most) / all);
     const uint64_t learning = aims.size() > 0 ? paths / 2 : 0;
     std::vector<double> worth(aims.size());
     for (uint64_t k = 0; k < paths; ++k) {

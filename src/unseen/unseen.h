@@ -24,7 +24,7 @@ inline uint32_t growths_met(const Light& light, const Ray& ray) {
     const real t = is_ball ? dot(to_centre, ray.d) : dot(light.n, to_centre) / cosine;
     if (!(t > 0 && t < ray.tmax)) return 0;
     if (!(cosine < 0 || (light.twosided && cosine > 0))) return 0;
-    const real r = is_ball ? light.reach : 1 / std::sqrt(pi * light.pdf_area);
+    const real r = is_ball ? light.radius : 1 / std::sqrt(pi * light.pdf_area);
     // most: the disc is as large as its distance.
     const real least = length(t * ray.d - to_centre) / r, most = length(to_centre) / r;
     uint32_t met = 0;
@@ -44,11 +44,10 @@ struct NearMissVisitor {
     Tally& tally;
     bool is_seen = false;  // the first surface is no mirror or glass
 
-    void operator()(const Segment& segment, const Step& here) {
-        if (segment.k == 0) is_seen = here.met && !here.vertex.material->is_delta();
-        if (segment.k > 0 && std::isinf(segment.pdf) && !groups.empty())
-            add_near_misses(segment, here);
-        visit_lights(scene, segment, here, [&](size_t light, rgb L) { add_came(light, L); });
+    void operator()(const PathState& path, const VertexEvents& here) {
+        if (path.k == 0) is_seen = here.met && !here.vertex.material->is_delta();
+        if (path.k > 0 && std::isinf(path.pdf) && !groups.empty()) add_near_misses(path, here);
+        visit_lights(scene, path, here, [&](size_t light, rgb L) { add_came(light, L); });
     }
 
 private:
@@ -67,23 +66,23 @@ private:
         if (c > 0) tally.near[g].squares[k] += fixed_point(0x1p20 * c);
     }
     // Rarely called, so not inlined into the path's loop.
-    [[gnu::noinline]] void add_near_misses(const Segment& segment, const Step& here) {
+    [[gnu::noinline]] void add_near_misses(const PathState& path, const VertexEvents& here) {
         const size_t n = scene.lights.size();
         const bool met_one = here.met && max_of(here.Le) > 0;
         const size_t met = met_one ? size_t(scene.light_of[here.vertex.hit.id]) : n;
-        if (met_one) add(segment, met, ~0u);
-        Ray ray = segment.ray;
+        if (met_one) add(path, met, ~0u);
+        Ray ray = path.ray;
         ray.tmax = here.met ? here.vertex.hit.t : infinity;
         // Of many lights one represents all, drawn by bits of the ray.
         const size_t drawn =
             n > max_light_groups ? hash(std::bit_cast<uint64_t>(double(ray.d.x)), 0) % n : n;
         for (size_t l = drawn % n; l < (drawn < n ? drawn + 1 : n); ++l)
             if (const uint32_t near = growths_met(scene.lights[l], ray) & ~1u; near && l != met)
-                add(segment, l, near, drawn < n ? double(n) : 1);
+                add(path, l, near, drawn < n ? double(n) : 1);
     }
-    void add(const Segment& segment, size_t light, uint32_t near, double represented = 1) {
+    void add(const PathState& path, size_t light, uint32_t near, double represented = 1) {
         const size_t g = group_of[light];
-        const double c = mean_square(segment.beta * scene.lights[light].L) / groups[g].L2 *
+        const double c = mean_square(path.beta * scene.lights[light].L) / groups[g].L2 *
                          square(tally.share) * represented;
         if (!(c > 0)) return;
         const FixedPoint c1 = fixed_point(c), c2 = fixed_point(c * c);
@@ -228,7 +227,7 @@ public:
     const std::vector<size_t>& noisy() const { return view_.noisy; }
     static std::string why_unknown(const Film& film, const ImageError& error) {
         MissedLight unseen;
-        unseen.add(film.near, double(film.min_taken()));
+        unseen.add(film.near, double(film.min_samples_done()));
         return unseen.doubt(error.d2(), error.norm(), error.pixels);
     }
     NearMissVisitor visitor(Tally& tally) const { return {scene_, view_.groups, group_of_, tally}; }

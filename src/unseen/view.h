@@ -12,11 +12,11 @@ inline double mean_square(rgb L) {
 
 // Calls visit(light, L) with what lights bring at a vertex, but where the eye sees them.
 template <class Visit>
-void visit_lights(const Scene& s, const Segment& segment, const Step& here, Visit visit) {
-    if (segment.k > 0 && max_of(here.Le) > 0)
-        visit(size_t(s.light_of[here.vertex.hit.id]), segment.beta * here.Le * here.weight);
+void visit_lights(const Scene& s, const PathState& path, const VertexEvents& here, Visit visit) {
+    if (path.k > 0 && max_of(here.Le) > 0)
+        visit(size_t(s.light_of[here.vertex.hit.id]), path.beta * here.Le * here.weight);
     if (here.direct.light)
-        visit(size_t(here.direct.light - s.lights.data()), segment.beta * here.direct.L);
+        visit(size_t(here.direct.light - s.lights.data()), path.beta * here.direct.L);
 }
 
 // The place in NearMisses::from_eye of a positive radiance: three octaves each, in turns.
@@ -37,7 +37,7 @@ struct EyePath {
 };
 
 // The view of the next ray: that of a mirror, or the same behind glass; nothing at other surfaces.
-inline std::optional<size_t> next_view(const Aims& aims, size_t view, const Step& here) {
+inline std::optional<size_t> next_view(const Aims& aims, size_t view, const VertexEvents& here) {
     if (here.end != End::no || !here.vertex.material->is_delta()) return {};
     return here.scattered.wi.z < 0 ? view : aims.in_mirror(view, here.vertex.hit.id);
 }
@@ -47,35 +47,35 @@ inline std::optional<size_t> next_view(const Aims& aims, size_t view, const Step
 // they are all paths.)
 inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const Technique& technique,
                                        const Aims& aims, uint64_t k) {
-    static const Pattern pattern{SamplerKind::independent};
+    static const SamplerSettings settings{SamplerKind::independent};
     const vec3 eye = s.camera.eye;
     const auto aim =
         aims.sample(eye, radical_inverse(3, k), {radical_inverse(5, k), radical_inverse(2, k)});
     const auto to = aim ? pixel_through(s, band, aim->d) : std::nullopt;
     if (!to) return {};
-    EyePath path{aim->at, to->pixel};
-    const Sampler sampler(pattern, 0, k);
+    EyePath found{aim->at, to->pixel};
+    const Sampler sampler(settings, 0, k);
     std::optional<size_t> view = 0;
-    for (Segment segment{{eye, aim->d}, eye}; segment.k <= most_bounces;) {
-        const Step here = step(s, technique, segment, sampler);
+    for (PathState path{{eye, aim->d}, eye}; path.k <= max_bounces;) {
+        const VertexEvents here = step(s, technique, path, sampler);
         if (view) {
             const auto next = next_view(aims, *view, here);
             if (!next && *view != aims.view_of(aim->at)) return {};
             view = next;
         }
-        if (segment.k == 0 && max_of(here.Le) > 0) {
-            path.seen = size_t(s.light_of[here.vertex.hit.id]);
-            path.pdf_of_points =
-                double(pdf_light(s.lights[*path.seen], eye, here.vertex.at)) * to->solid_angle;
+        if (path.k == 0 && max_of(here.Le) > 0) {
+            found.seen = size_t(s.light_of[here.vertex.hit.id]);
+            found.pdf_of_points =
+                double(pdf_light(s.lights[*found.seen], eye, here.vertex.at)) * to->solid_angle;
         }
-        visit_lights(s, segment, here, [&](size_t light, rgb L) {
-            if (mean_of(L) > 0) path.brought.emplace_back(light, mean_of(L));
+        visit_lights(s, path, here, [&](size_t light, rgb L) {
+            if (mean_of(L) > 0) found.brought.emplace_back(light, mean_of(L));
         });
         if (here.end != End::no) break;
-        segment = here.next;
+        path = here.next;
     }
-    path.pdf = double(aims.pdf(eye, aim->d, aims.view_of(aim->at))) * to->solid_angle;
-    return path.pdf > 0 ? std::optional(path) : std::nullopt;
+    found.pdf = double(aims.pdf(eye, aim->d, aims.view_of(aim->at))) * to->solid_angle;
+    return found.pdf > 0 ? std::optional(found) : std::nullopt;
 }
 
 // Paths that bring much tell where to aim.

@@ -161,7 +161,7 @@ public:
     // one point, or nearly coincide, rounding may let the two ways pass each other, which ends the
     // walk, too; the outline may then have a spike of no width.  Empty: too many corners.
     Outline wrap(int first) {
-        int a = first, b = first, begin = most_corners / 2, end = begin;
+        int a = first, b = first, begin = max_corners / 2, end = begin;
         while (begin > 0) {
             const Meeting on = next<+1>(a);
             const bool closed = on.line == b || (turns(a, b) && !turns(on.line, b));
@@ -178,11 +178,11 @@ public:
     }
 
 private:
-    static constexpr int most = 128, walls = 4, most_corners = 64;
+    static constexpr int most = 128, walls = 4, max_corners = 64;
     alignas(64) double dx_[most + cell::lanes] = {}, dy_[most + cell::lanes] = {},
                                   h_[most + cell::lanes] = {};
     int32_t neighbour_[most + cell::lanes] = {};
-    Corner corners_[most_corners];
+    Corner corners_[max_corners];
     int size_ = 0;
 
     void set(int k, const HalfPlane& p) {

@@ -55,10 +55,10 @@ OptionTable voronoi_table(VoronoiOptions& o) {
 }
 
 // The radiance of one path; the film gets only weighted means of paths.
-SampleFunction path_of(const Options& o, const Scene& scene, const Pattern& pattern) {
+SampleFunction path_of(const Options& o, const Scene& scene, const SamplerSettings& settings) {
     return [&](const PixelSample& s, Tally& tally) {
-        const Start at = start(scene, pattern, s);
-        const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](auto&, const Step& e) {
+        const Start at = start(scene, settings, s);
+        const rgb L = Li(scene, o.technique, at.ray, at.sampler, [&](auto&, const VertexEvents& e) {
             if (interrupted) throw Interrupted();
             tally.rays += 1 + (e.direct.light != nullptr);
         });
@@ -80,13 +80,13 @@ int voronoi_main(const std::vector<std::string>& words) {
     if (plan.paths > 1 << 20)
         throw UserError((o.spp > 0 ? "--spp" : o.scene + ": samples") +
                         std::string(": at most 1048576 samples per replication"));
-    const Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
+    const SamplerSettings settings = sampler_settings(o.sampler, o.seed, scene.depth);
     const auto outputs = outputs_of(o, parsed, "-voronoi", plan.size);
     catch_interrupt();
     for (const std::string& w : parsed.warnings) tell(o, o.scene + ": warning: " + w);
     WeightTroubles troubles;
-    const SampleFunction L =
-        weighted_mean(scene, pattern, o.weights, plan.paths, path_of(o, scene, pattern), troubles);
+    const SampleFunction L = weighted_mean(scene, settings, o.weights, plan.paths,
+                                           path_of(o, scene, settings), troubles);
     Picture picture = render(o, plan, L);
     Run& run = picture.run;
     if (interrupted) run.spp = 0;

@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    static constexpr int most_rings = 12;  // rings of buckets, before the tree takes over
+    static constexpr int max_rings = 12;  // rings of buckets, before the tree takes over
     static_assert(cell::lanes <= int(Buckets::spare), "HalfPlanes::add reads as many places more");
 
     std::vector<VoronoiCell> cells_;
@@ -148,7 +148,7 @@ private:
             if (outline.empty()) return too_much;
             const Sides sides = reached(site, flower_box(outline), at, ring);
             if (!sides.any()) break;
-            if (ring > most_rings) return too_much;
+            if (ring > max_rings) return too_much;
             const int before = lines_.size();
             if (!gather_ring(site, at, ring, sides)) return too_much;
             lines_.keep_cutters(before, outline);

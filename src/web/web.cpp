@@ -52,7 +52,7 @@ namespace {
 
 Options options;
 ParsedScene parsed;
-Pattern pattern;
+SamplerSettings settings;
 std::optional<LightRecorder> recorder;
 Plan plan;
 Film film;
@@ -88,7 +88,7 @@ void read_options(const Words& words) {
 }
 
 rgb radiance(const PixelSample& which, Tally& tally) {
-    const Start at = start(scene(), pattern, which);
+    const Start at = start(scene(), settings, which);
     const auto& of = options.view.of;
     if (of) return of({scene(), at, meet(scene(), at.ray), far_of(scene())});
     return Li(scene(), options.technique, at.ray, at.sampler, recorder->visitor(tally));
@@ -147,7 +147,7 @@ std::string light_sample(const Vertex& x, const DirectLight& d) {
 }
 
 // One vertex: every number of the rendering equation there.
-std::string vertex(const Segment& s, const Step& e) {
+std::string vertex(const PathState& s, const VertexEvents& e) {
     Object o;
     o.scalars({{"k", s.k}});
     o.vectors({{"from", s.from}, {"direction", s.ray.d}, {"throughput", s.beta}});
@@ -199,7 +199,7 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
     options.scene = called;
     parsed = with_options(read_text(taken_from(text, text_size), called), options);
     const NamedScene& s = scene();
-    pattern = make_pattern(options.sampler, options.seed, s.depth);
+    settings = sampler_settings(options.sampler, options.seed, s.depth);
     recorder.reset();
     if (!options.view.of) recorder.emplace(s, options.technique, 0, s.size.height, s.line_of_light);
     plan = plan_of(options, s, recorder ? &*recorder : nullptr);
@@ -215,9 +215,9 @@ void load(char* text, size_t text_size, char* name, size_t name_size, char* word
     const Camera& c = s.camera;
     o.vectors({{"eye", c.eye}, {"right", c.right}, {"up", c.up}, {"forward", c.forward}});
     o.scalars({{"tan_half", c.tan_half}});
-    constexpr size_t most_outlines = 4000;
+    constexpr size_t max_outlines = 4000;
     o.add("shapes",
-          list(s.shapes.size() > most_outlines ? std::vector<Shape>() : s.shapes, outline));
+          list(s.shapes.size() > max_outlines ? std::vector<Shape>() : s.shapes, outline));
     answer(o.text());
 }
 
@@ -236,7 +236,7 @@ EXPORT(add) void add(size_t first, size_t step, double n) {
 }
 
 // All blocks have n: workers have added them, the page has copied their sums here.
-EXPORT(took) void took(double n) { film.taken.assign(film.blocks(), uint64_t(n)); }
+EXPORT(took) void took(double n) { film.samples_done.assign(film.blocks(), uint64_t(n)); }
 
 // Where the page reads and writes a film: sums of all replications, deviations of the pilot.
 EXPORT(sums) double* sums() { return film.sum[0].data(); }
@@ -276,7 +276,7 @@ EXPORT(error) void error() {
 EXPORT(path) void path(int x, int y, double i, uint32_t set) {
     if (x < 0 || y < 0 || x >= film.size.width || y >= film.size.height)
         throw UserError("--pixel: outside the image");
-    const Start at = start(scene(), pattern, {x, y, uint64_t(i), set});
+    const Start at = start(scene(), settings, {x, y, uint64_t(i), set});
     char* printed = nullptr;
     size_t size = 0;
     std::FILE* out = open_memstream(&printed, &size);
@@ -284,12 +284,12 @@ EXPORT(path) void path(int x, int y, double i, uint32_t set) {
     log.film(at);
     std::vector<std::string> vertices;
     End why = End::no;
-    const rgb L =
-        Li(scene(), options.technique, at.ray, at.sampler, [&](const Segment& s, const Step& e) {
-            log(s, e);
-            vertices.push_back(vertex(s, e));
-            why = e.end;
-        });
+    const rgb L = Li(scene(), options.technique, at.ray, at.sampler,
+                     [&](const PathState& s, const VertexEvents& e) {
+                         log(s, e);
+                         vertices.push_back(vertex(s, e));
+                         why = e.end;
+                     });
     log.end(in_words(why), L);
     std::fclose(out);
     Object o;

@@ -18,20 +18,20 @@ namespace penumbra {
 inline constexpr real even_part = real(0.0625);
 
 // A light, or several together, from afar: it sends L A cos_l cos_s / d^2 to a surface.  L A is its
-// strength, d the distance of its centre, and the cosines are those at both ends.
+// intensity, d the distance of its centre, and the cosines are those at both ends.
 struct DistantLight {
-    vec3 centre = {};   // of several: the mean of theirs, by strength
-    real reach = 0;     // radius of a sphere about the centre that holds all
-    real spread2 = 0;   // reach^2; of several: mean square of the distance from the centre
+    vec3 centre = {};   // of several: the mean of theirs, by intensity
+    real radius = 0;    // radius of a sphere about the centre that holds all
+    real spread2 = 0;   // radius^2; of several: mean square of the distance from the centre
     vec3 axis = {};     // normal of a polygon; of several: the mean of those of one side
     real round = 1;     // the part that shines in all directions
     real behind = 0;    // distance behind the plane through the centre that is still lit, or < 0
     real twosided = 0;  // 1: it shines against its axis, too
-    real strength = 0;
+    real intensity = 0;
 };
-inline DistantLight from_afar(const Light& l, real strength) {
-    DistantLight light{l.centre, l.reach, sqr(l.reach)};
-    light.strength = strength;
+inline DistantLight from_afar(const Light& l, real intensity) {
+    DistantLight light{l.centre, l.radius, sqr(l.radius)};
+    light.intensity = intensity;
     if (l.is_round()) return light;
     // A polygon does not shine along its own plane, within rounding.
     light.axis = l.n, light.round = 0, light.twosided = l.twosided, light.behind = -2 * l.error;
@@ -48,16 +48,16 @@ struct LightWeight {
 inline LightWeight light_weight(const DistantLight& light, vec3 p, vec3 m) {
     const vec3 to = light.centre - p;
     const real d2 = dot(to, to) + light.spread2, d = std::sqrt(d2), per_d2 = 1 / d2;
-    const real height = dot(m, to) + light.reach;
+    const real height = dot(m, to) + light.radius;
     const real top = height < d ? height : d;
     const real front = light.behind - dot(light.axis, to);
     const real back = -front * light.twosided;
-    // At most d, though several may reach far beyond their distance.
+    // At most d, though several may extend far beyond their distance.
     const real lit = front > back ? front : back;
     const real facing = (lit < d ? lit : d) + light.round * d;
     const real can = top > 0 && facing > 0 ? real(1) : real(0);
     // With `can` elsewhere GCC 12 makes no vector instructions of a loop over lights.
-    return {light.strength * (top * per_d2) * (facing * per_d2) * can, can};
+    return {light.intensity * (top * per_d2) * (facing * per_d2) * can, can};
 }
 
 // Probabilities, by the sums of weights over all lights to choose from.
@@ -84,21 +84,21 @@ struct ChosenLight {
     real probability = 1;
 };
 
-// The strength of each light.
-inline std::vector<double> strengths_of(const std::vector<Light>& lights) {
+// Of each light, see lights.h.
+inline std::vector<double> intensities_of(const std::vector<Light>& lights) {
     std::vector<double> all;
-    for (const Light& l : lights) all.push_back(strength(l));
+    for (const Light& l : lights) all.push_back(intensity(l));
     return all;
 }
 
-// Lights from afar.  Their strengths become relative to the greatest, so that a float holds them.
+// Lights from afar.  Their intensities become relative to the greatest, so that a float holds them.
 inline std::vector<DistantLight> from_afar(const std::vector<Light>& lights,
-                                           const std::vector<double>& strengths) {
+                                           const std::vector<double>& intensities) {
     double most = std::numeric_limits<double>::min();
-    for (double x : strengths) most = std::max(most, x);
+    for (double x : intensities) most = std::max(most, x);
     std::vector<DistantLight> all;
     for (size_t i = 0; i < lights.size(); ++i)
-        all.push_back(from_afar(lights[i], real(strengths[i] / most)));
+        all.push_back(from_afar(lights[i], real(intensities[i] / most)));
     return all;
 }
 
@@ -106,8 +106,8 @@ inline std::vector<DistantLight> from_afar(const std::vector<Light>& lights,
 class LightList {
 public:
     LightList() = default;
-    LightList(const std::vector<Light>& lights, const std::vector<double>& strengths)
-        : lights_(from_afar(lights, strengths)) {}
+    LightList(const std::vector<Light>& lights, const std::vector<double>& intensities)
+        : lights_(from_afar(lights, intensities)) {}
 
     // For a surface at p with normal m on the side of the eye, by u in [0,1): lights share [0,1),
     // and the one whose part holds u is chosen.

@@ -4,7 +4,7 @@
 //     name            in what is told of a path
 //     is_delta        true if it has no surface that a ray could meet
 //     place(l)        sets what of Emitter follows from its shape, and the centre from l.p
-//     strength(L)     L times the area that it shows from afar; of a point, its intensity
+//     intensity(L)    L times the area that it shows from afar, at most; of a point, L itself
 //     point(l, u)     a point of its surface, uniformly distributed, by u in [0,1)^2
 //     sample(l, p, u) a point that shines on p; none if the point that u chooses does not
 //     pdf(l, p, y)    density (1/sr) with which sample from p chooses the point y
@@ -22,8 +22,8 @@ struct Emitter {
     vec3 p = {};       // centre of a sphere, corner of a polygon, the point
     rgb L = {};        // radiance; of a point: intensity, radiance x length^2
     real error = 0;    // of surface points, see Surface
-    vec3 centre = {};  // of a sphere about it, of radius reach
-    real reach = 0;
+    vec3 centre = {};  // of a sphere that holds it
+    real radius = 0;
     vec3 n = {};        // unit normal of its bright side; 0 if it shines in all directions
     real pdf_area = 0;  // of a polygon: density of uniform points, 1 / its area
     bool twosided = false;
@@ -47,7 +47,7 @@ struct PointLight {
     static constexpr bool is_delta = true;
 
     void place(Emitter&) const {}
-    double strength(double I) const { return I; }
+    double intensity(double I) const { return I; }
     Surface point(const Emitter& l, vec2) const { return {l.p, {}, l.error}; }
     std::optional<LightSample> sample(const Emitter& l, vec3 p, vec2) const {
         vec3 w = l.p - p;
@@ -64,8 +64,8 @@ struct SphereLight {
     static constexpr bool is_delta = false;
     real r = 0;  // radius
 
-    void place(Emitter& l) const { l.reach = r; }
-    double strength(double L) const { return L * std::numbers::pi * double(r) * double(r); }
+    void place(Emitter& l) const { l.radius = r; }
+    double intensity(double L) const { return L * std::numbers::pi * double(r) * double(r); }
     Surface point(const Emitter& l, vec2 u) const {
         const vec3 n = sample_uniform_sphere(u);
         return {l.p + r * n, n, l.error};
@@ -120,11 +120,11 @@ struct PolygonLight {
         l.n = unit(cross(e, f));
         l.pdf_area = is_quad ? pdf_quad_area(e, f) : pdf_triangle_area(e, f);
         l.centre = l.p + to_centre;
-        l.reach = is_quad
-                      ? std::max(length(e + f), length(e - f)) / 2
-                      : std::max({length(to_centre), length(e - to_centre), length(f - to_centre)});
+        l.radius =
+            is_quad ? std::max(length(e + f), length(e - f)) / 2
+                    : std::max({length(to_centre), length(e - to_centre), length(f - to_centre)});
     }
-    double strength(double L) const {
+    double intensity(double L) const {
         return L * double(length(cross(e, f) * real(is_quad ? 1 : 0.5)));
     }
     Surface point(const Emitter& l, vec2 u) const {
@@ -174,9 +174,9 @@ inline const char* name_of(const Light& l) {
     return l.ask([](const auto& light) { return light.name; });
 }
 // Of the mean of the channels.  A float might overflow.
-inline double strength(const Light& l, double factor = 1) {
+inline double intensity(const Light& l, double factor = 1) {
     const double L = factor * double(mean_of(l.L));
-    return l.ask([&](const auto& light) { return light.strength(L); });
+    return l.ask([&](const auto& light) { return light.intensity(L); });
 }
 inline std::optional<LightSample> sample_light(const Light& l, vec3 p, vec2 u) {
     return l.ask([&](const auto& light) { return light.sample(l, p, u); });

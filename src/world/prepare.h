@@ -6,7 +6,7 @@
 #include "many/arrivals.h"
 #else
 namespace penumbra {
-inline LightList light_choice_for(const Scene& s) { return {s.lights, strengths_of(s.lights)}; }
+inline LightList light_choice_for(const Scene& s) { return {s.lights, intensities_of(s.lights)}; }
 }  // namespace penumbra
 #endif
 

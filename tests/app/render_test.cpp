@@ -30,14 +30,14 @@ Options quick(SamplerKind kind, uint64_t spp) {
 
 struct Work {
     Plan plan;
-    Pattern pattern;
+    SamplerSettings settings;
 
     Work(const Options& o, const Scene& scene)
-        : plan(plan_of(o, scene)), pattern(make_pattern(o.sampler, o.seed, scene.depth)) {}
+        : plan(plan_of(o, scene)), settings(sampler_settings(o.sampler, o.seed, scene.depth)) {}
     SampleFunction radiance(const Options& o, const Scene& scene) const {
         return [&, t = o.technique](const PixelSample& s, Tally& tally) {
-            const Start at = start(scene, pattern, s);
-            return Li(scene, t, at.ray, at.sampler, [&](const Segment&, const Step& e) {
+            const Start at = start(scene, settings, s);
+            return Li(scene, t, at.ray, at.sampler, [&](const PathState&, const VertexEvents& e) {
                 tally.rays += 1 + (e.direct.light != nullptr);
             });
         };
@@ -289,11 +289,11 @@ TEST_CASE(
             if (sets != 1) continue;
             o = quick(kind, 36);
             o.replications = 1;
-            const Pattern pattern = Work(o, scene).pattern;
+            const SamplerSettings settings = Work(o, scene).settings;
             for (int i : {0, 100, 287}) {
                 double sum = 0;
                 for (uint64_t k = 0; k < 36; ++k) {
-                    const Start at = start(scene, pattern, {i % 24, i / 24, k});
+                    const Start at = start(scene, settings, {i % 24, i / 24, k});
                     sum += double(Li(scene, o.technique, at.ray, at.sampler).x);
                 }
                 CHECK(one.image.pixels[size_t(i)][0] == float(sum / 36));
@@ -317,7 +317,7 @@ TEST_CASE("--error: an image ends at the first check that finds its error small 
             fill_pilot(film, pilot_samples, L);
             uint64_t checks = 0;
             do {
-                fill(film, next_check(film.min_taken()), L);
+                fill(film, next_check(film.min_samples_done()), L);
                 ++checks;
             } while (doubt_of(film, error_of(film), {}) != Doubt::no ||
                      !is_small_enough(error_of(film), E));
@@ -462,7 +462,8 @@ TEST_CASE("memory for a film and its image is what its arrays have") {
                     const Image image = image_of(f);
                     auto bytes = [](const auto& v) { return double(v.capacity() * sizeof v[0]); };
                     const double later = std::max(bytes(f.pilot_deviation), bytes(image.pixels));
-                    const double all = bytes(f.sum) + bytes(f.weight) + bytes(f.taken) + later;
+                    const double all =
+                        bytes(f.sum) + bytes(f.weight) + bytes(f.samples_done) + later;
                     CHECK(all <= bytes_of(size, K));
                     CHECK(all > 0.8 * bytes_of(size, K));
                 }

@@ -16,8 +16,8 @@ rgb seen(const Scene& scene, Text view, const Start& at) {
     return named(view).of({scene, at, meet(scene, at.ray), far_of(scene)});
 }
 rgb seen(const Scene& scene, Text view, const Ray& ray) {
-    const Pattern pattern;
-    return seen(scene, view, {Sampler(pattern, 0, 0), {}, ray});
+    const SamplerSettings settings;
+    return seen(scene, view, {Sampler(settings, 0, 0), {}, ray});
 }
 
 }  // namespace
@@ -43,10 +43,10 @@ TEST_CASE("views show normal, distance, albedo and work; glass is as white as it
 TEST_CASE("13/16 of the directions from inside a sphere are open") {
     const Scene scene =
         scene_of("camera 0 0 0  0 0 -1  40\ndiffuse d .5 .5 .5\nsphere 0 0 0  1  d\n");
-    const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1);
+    const SamplerSettings settings = sampler_settings(SamplerKind::independent, seed_here(), 1);
     Moments open;
     for (uint64_t i = 0; i < 40000; ++i)
-        open.add(double(seen(scene, "occlusion", start(scene, pattern, {0, 0, i})).x));
+        open.add(double(seen(scene, "occlusion", start(scene, settings, {0, 0, i})).x));
     EXPECT(oracle::expect_mean(13.0 / 16, estimate(open)), 0.02);
 }
 

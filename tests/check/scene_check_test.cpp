@@ -298,7 +298,7 @@ TEST_CASE("no path gets into an opaque body by glass that touches it") {
             for (uint64_t k = 0; k < 16; ++k)
                 radiance(scene, {Direction::bsdf, LightMode::none, 0},
                          {SamplerKind::independent, 3}, i % 8, i / 8, k,
-                         [&](const Segment&, const Step& e) {
+                         [&](const PathState&, const VertexEvents& e) {
                              if (!e.met || !(max_of(e.vertex.material->diffuse()) > 0)) return;
                              ++met;
                              inside += e.vertex.cos_o < 0;
@@ -464,7 +464,7 @@ TEST_CASE("the house of atelier is closed, and only the fronts of its faces are 
     for (int y = 0; y < scene.size.height; ++y)
         for (int x = 0; x < scene.size.width; ++x)
             radiance(scene, {Direction::bsdf, LightMode::none, 0}, {SamplerKind::independent, 5}, x,
-                     y, 0, [&](const Segment&, const Step& e) {
+                     y, 0, [&](const PathState&, const VertexEvents& e) {
                          if (!e.met)
                              ++escapes;
                          else if (e.vertex.cos_o < 0)

@@ -41,30 +41,30 @@ Out build(In x) {
 
 // The numbers of path `seed`.
 Sampler sampler(double seed) {
-    static const Pattern pattern{SamplerKind::independent, 3};
-    return {pattern, 0, uint64_t(seed)};
+    static const SamplerSettings settings{SamplerKind::independent, 3};
+    return {settings, 0, uint64_t(seed)};
 }
 
 // 3 numbers: how light is found, how directions are chosen, the threshold of roulette.
 Technique technique(In x) { return {Direction(int(x[1])), LightMode(int(x[0])), real(x[2])}; }
 
 // 17 numbers.
-Segment segment(In x) {
+PathState segment(In x) {
     const Ray ray{vec3_of(x, 0), vec3_of(x, 3)};
     return {ray, vec3_of(x, 6), real(x[9]), vec3_of(x, 10), int(x[13]), vec3_of(x, 14)};
 }
 
 // In glass there is one more number, eta2.
-Step asked_step(In x) {
+VertexEvents asked_step(In x) {
     const Sampler numbers_of_path = sampler(x[3]);
-    Segment arrives = segment(x.subspan(4));
+    PathState arrives = segment(x.subspan(4));
     if (x.size() > 21) arrives.eta2 = real(x[21]);
     return step(scene, technique(x), arrives, numbers_of_path);
 }
 Out take_step(In x) {
-    const Step e = asked_step(x);
+    const VertexEvents e = asked_step(x);
     const bool goes_on = e.end == End::no;
-    const Segment& s = e.next;
+    const PathState& s = e.next;
     return row(e.met, goes_on, e.weight, e.Le, e.direct.L, e.wi, e.vertex.local.n, s.ray.o, s.ray.d,
                s.from, s.pdf, goes_on ? s.beta : rgb{}, s.k, s.n, e.scattered.f, e.scattered.wi,
                e.scattered.pdf);
@@ -72,7 +72,7 @@ Out take_step(In x) {
 
 // Of the ray that goes on; 0 if none does.
 rgb throughput(In x) {
-    const Step e = asked_step(x);
+    const VertexEvents e = asked_step(x);
     return e.end != End::no ? rgb{} : e.next.beta;
 }
 
@@ -91,10 +91,11 @@ Out light_sample(In x) {
     const Sampler numbers_of_path = sampler(x[3]);
     const auto at = meet(scene, {vec3_of(x, 4), vec3_of(x, 7)});
     if (!at) throw std::runtime_error("the ray meets nothing");
-    const auto chosen = scene.light_choice.choose(at->at.p, at->local.n,
-                                                numbers_of_path.choice(0, Draw::which_light));
+    const auto chosen = scene.light_choice.choose(
+        at->at.p, at->local.n, numbers_of_path.choice(0, Dimension::which_light));
     const Light& light = scene.lights[chosen.light];
-    const auto s = sample_light(light, at->at.p, numbers_of_path.get2(dimension(0, Draw::light_x)));
+    const auto s =
+        sample_light(light, at->at.p, numbers_of_path.get2(dimension(0, Dimension::light_x)));
     if (!s) return Out(23);
     const vec3 wi = at->local.to_local(s->wi);
     const DirectLight d = direct_light(scene, t, *at, numbers_of_path, 0);
@@ -107,7 +108,7 @@ Out light_sample(In x) {
 Out visits(In x) {
     int calls = 0, in_turn = 0;
     Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3]),
-       [&](const Segment& s, const Step&) { in_turn += s.k == calls++; });
+       [&](const PathState& s, const VertexEvents&) { in_turn += s.k == calls++; });
     return row(calls, in_turn);
 }
 
@@ -127,7 +128,7 @@ real weight(In x) {
 
 // How likely a light sample from there is to choose that light, and the density of its point.
 Out likelihood(In x) {
-    const Segment s = segment(x.subspan(3));
+    const PathState s = segment(x.subspan(3));
     const Vertex y = on_a_light(x.subspan(20));
     const size_t light = size_t(scene.light_of[y.hit.id]);
     return row(scene.light_choice.probability_of(light, s.from, s.n),
@@ -160,6 +161,6 @@ int main() {
         {"likelihood", 27, likelihood},
         {"sample_glass", 6, glass},
         {"number", 3,
-         [](In x) { return sampler(x[0]).get(dimension(int(x[1]), Draw(int(x[2])))); }},
+         [](In x) { return sampler(x[0]).get(dimension(int(x[1]), Dimension(int(x[2])))); }},
     });
 }

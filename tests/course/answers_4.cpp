@@ -18,13 +18,13 @@ real scrambled(In x) {
 // Seed, pixel, sample: all numbers that a path of so many vertices may draw, the film's first.
 constexpr int depth = 8;
 Out path(In x) {
-    static Pattern pattern = make_pattern(SamplerKind::halton, 0, depth);
-    pattern.seed = uint64_t(x[0]);
-    const Sampler sampler(pattern, uint64_t(x[1]), uint64_t(x[2]));
+    static SamplerSettings settings = sampler_settings(SamplerKind::halton, 0, depth);
+    settings.seed = uint64_t(x[0]);
+    const Sampler sampler(settings, uint64_t(x[1]), uint64_t(x[2]));
     Out all{double(sampler.get(film_x)), double(sampler.get(film_y))};
     for (int vertex = 0; vertex < depth; ++vertex)
-        for (uint32_t what = 0; what < uint32_t(Draw::count); ++what)
-            all.push_back(double(sampler.get(dimension(vertex, Draw(what)))));
+        for (uint32_t what = 0; what < uint32_t(Dimension::count); ++what)
+            all.push_back(double(sampler.get(dimension(vertex, Dimension(what)))));
     return all;
 }
 

@@ -115,14 +115,14 @@ Out walked(In x) {
         scene = room(albedo, {1, 2, 4}, false);
     }
     const uint64_t seed = uint64_t(x[4]);
-    const Pattern pattern = Particles::pattern(SamplerKind::independent, seed),
-                  more = make_pattern(SamplerKind::independent, seed, 0);
+    const SamplerSettings settings = Particles::settings(SamplerKind::independent, seed),
+                          more = sampler_settings(SamplerKind::independent, seed, 0);
     Balance b;
     std::vector<rgb> power;
     std::vector<vec3> at;
     std::vector<vec3> n;
     const uint32_t rays =
-        walk(scene, LightsByPower(scene.lights), WalkNumbers(pattern, more, 0, uint64_t(x[3])), b,
+        walk(scene, LightsByPower(scene.lights), WalkNumbers(settings, more, 0, uint64_t(x[3])), b,
              [&](const Vertex& v, rgb p) {
                  power.push_back(p), at.push_back(v.at.p), n.push_back(v.local.n);
              });

@@ -175,10 +175,10 @@ TEST_CASE("the stated d^2 is that from seed to seed: samplers, replications, wei
             const uint64_t n = K ? 24 : 4;
             Spread spread;
             for (uint64_t r = 0; r < 200; ++r) {
-                const Pattern pattern = make_pattern(kind, hash(seed_here(), r), 1);
+                const SamplerSettings settings = sampler_settings(kind, hash(seed_here(), r), 1);
                 const SampleFunction L = [&](const PixelSample& s, Tally&) {
                     const uint64_t pixel = uint64_t(s.y * 12 + s.x);
-                    const Sampler sampler(pattern, pixel, s.i, s.replication);
+                    const Sampler sampler(settings, pixel, s.i, s.replication);
                     return heteroscedastic(s.x, s.y, sampler.get2(film_x));
                 };
                 const Film film = filled({12, 9}, K, n, L);

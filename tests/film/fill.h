@@ -56,7 +56,7 @@ inline bool same(const Film& a, const Film& b) {
     return a.size.width == b.size.width && a.first_row == b.first_row &&
            a.replications == b.replications && a.is_pilot == b.is_pilot && a.pilot == b.pilot &&
            same(a.sum, b.sum) && same(a.weight, b.weight) &&
-           same(a.pilot_deviation, b.pilot_deviation) && same(a.taken, b.taken) &&
+           same(a.pilot_deviation, b.pilot_deviation) && same(a.samples_done, b.samples_done) &&
            same(a.near, b.near);
 }
 

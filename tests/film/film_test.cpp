@@ -105,7 +105,7 @@ TEST_CASE("a pixel is the mean of its samples, however passes divide them") {
                                        {11, 12}}) {
                 Film f = film_of_weights(size, 3, has_pilot);
                 for (uint64_t n : passes)
-                    if (f.min_taken() % 2)
+                    if (f.min_samples_done() % 2)
                         fill(f, n, numbered);
                     else
                         for (size_t b = f.blocks(); b-- > 0;) fill_blocks(f, b, b + 1, n, numbered);
@@ -122,7 +122,7 @@ TEST_CASE("a pixel keeps its pilot, and goes on where that ended") {
           "yes 4 8 12");
     choose_weights(f);
     f.weight = {1, 4};
-    CHECK(said(f.has_samples(), f.min_taken(), f.pilot, f.is_pilot) == "yes 0 4 no");
+    CHECK(said(f.has_samples(), f.min_samples_done(), f.pilot, f.is_pilot) == "yes 0 4 no");
     CHECK(said(f.samples_per_pixel(), f.samples_per_pixel(1)) == "8 8");
     for (const auto& row : std::initializer_list<std::array<uint64_t, 3>>{
              {1, 4, 4}, {2, 4, 8}, {3, 4, 12}, {5, 5, 20}}) {
@@ -207,8 +207,8 @@ TEST_CASE("blocks commit whole: one whose function throws stays as it was, and i
             CHECK(same(f, before));
         }
         fill_blocks(f, 0, 100, 9, numbered);
-        CHECK(f.min_taken() == 3);
-        CHECK(f.max_taken() == 9);
+        CHECK(f.min_samples_done() == 3);
+        CHECK(f.max_samples_done() == 9);
         const Film some = f;
         CHECK_THROWS_AS(
             fill_blocks(f, 100, 101, 9, [](const PixelSample&, Tally&) -> rgb { throw Failure(); }),

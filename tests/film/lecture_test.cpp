@@ -34,10 +34,10 @@ struct Rendered {
     Tally tally;
 };
 Rendered rendered(const Scene& scene) {
-    const Pattern pattern = make_pattern(SamplerKind::sobol, 0, scene.depth);
+    const SamplerSettings settings = sampler_settings(SamplerKind::sobol, 0, scene.depth);
     const SampleFunction L = [&](const PixelSample& which, Tally& tally) {
-        const Start at = start(scene, pattern, which);
-        return Li(scene, {}, at.ray, at.sampler, [&](const Segment&, const Step& e) {
+        const Start at = start(scene, settings, which);
+        return Li(scene, {}, at.ray, at.sampler, [&](const PathState&, const VertexEvents& e) {
             tally.rays += 1 + (e.direct.light != nullptr);
         });
     };

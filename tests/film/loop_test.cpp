@@ -40,7 +40,7 @@ Run run(Film& film, const Plan& plan, const SampleFunction& L = noisy, double ti
     watch.for_each = by_workers;
     watch.interrupted = [] { return interrupted != 0; };
     watch.between = [&](const Film& f, const Tally& tally) {
-        r.ends.push_back(f.min_taken());
+        r.ends.push_back(f.min_samples_done());
         if (between) between(f, tally);
     };
     Loop loop(film, plan, counting, watch);
@@ -114,12 +114,12 @@ TEST_CASE("passes of the pilot have fixed ends, then weights are chosen; all see
     plan.noisy = {30, 200};
     std::vector<uint64_t> pilots;
     const Run r = run(film, plan, noisy, 1e-6, [&](const Film& f, const Tally& tally) {
-        if (f.is_pilot) pilots.push_back(f.min_taken());
-        CHECK(f.min_taken() == f.max_taken());
+        if (f.is_pilot) pilots.push_back(f.min_samples_done());
+        CHECK(f.min_samples_done() == f.max_samples_done());
         CHECK(double(tally.rays) == samples_of(f));
     });
     CHECK(pilots == std::vector<uint64_t>{0, 1, 2, 3});
-    CHECK(said(film.is_pilot, film.pilot, film.min_taken()) == "no 4 20");
+    CHECK(said(film.is_pilot, film.pilot, film.min_samples_done()) == "no 4 20");
     Film by_hand = film_of({24, 12}, 0);
     by_hand.first_row = 50;
     for (uint64_t n : {1, 2, 3, 4}) fill(by_hand, n, noisy);
@@ -139,7 +139,7 @@ TEST_CASE("a time is kept, and every pixel has a sample when it is over") {
             const Run r = run(film, plan, noisy, 1.0 / 48);
             CAPTURE(seconds);
             CHECK(r.stop == Stop::time);
-            const double took = film.samples_per_pixel(), n = double(film.min_taken());
+            const double took = film.samples_per_pixel(), n = double(film.min_samples_done());
             CHECK(took >= seconds);
             // The last pass had one sample in each replication of weight 1.
             const double before = took * (n - 1) / n;
@@ -156,7 +156,7 @@ TEST_CASE("a time is kept, and every pixel has a sample when it is over") {
         Plan plan;
         plan.seconds = 1e-12;
         CHECK(run(film, plan).stop == Stop::time);
-        CHECK(said(film.min_taken(), film.max_taken()) == "1 1");
+        CHECK(said(film.min_samples_done(), film.max_samples_done()) == "1 1");
         // After a pilot no pass is needed.
         Film chosen = filled({24, 12}, 0, 0, noisy);
         chosen.pilot = 4;
@@ -183,7 +183,7 @@ TEST_CASE("of reasons to stop the first counts: Ctrl-C, NaN, error, samples, tim
             Plan plan = plan_of(all & 2 ? 8 : 0);
             plan.seconds = all & 1 ? 1 : 0, plan.error = all & 4 ? 0.1 : 0;
             Watch watch;
-            watch.elapsed = [&] { return film.min_taken() < 8 ? 0.0 : 1.0; };
+            watch.elapsed = [&] { return film.min_samples_done() < 8 ? 0.0 : 1.0; };
             watch.interrupted = [] { return interrupted != 0; };
             const SampleFunction L = [&](const PixelSample&, Tally&) {
                 if (all & 16) interrupted = SIGINT;
@@ -215,8 +215,8 @@ TEST_CASE("a sample that is no number ends the run at its pass, counted with all
                 CHECK(r.stop == Stop::not_finite);
                 CHECK(r.bad == bad);
                 CHECK(r.bad > 0);
-                CHECK(film.min_taken() == film.max_taken());
-                CHECK(film.min_taken() < 64);
+                CHECK(film.min_samples_done() == film.max_samples_done());
+                CHECK(film.min_samples_done() < 64);
             }
 }
 
@@ -253,7 +253,7 @@ TEST_CASE("an error ends a run at the first check where it is small enough, pass
         plan.samples = n - 1;
         Film film = film_of({24, 12}, K);
         CHECK(run(film, plan).stop == Stop::samples);
-        CHECK(film.min_taken() == n - 1);
+        CHECK(film.min_samples_done() == n - 1);
     }
     // An error in doubt ends a run at its first check of 4096 samples per pixel.
     Plan plan;
@@ -262,7 +262,7 @@ TEST_CASE("an error ends a run at the first check where it is small enough, pass
     CHECK(run(film, plan).stop == Stop::error_unknown);
     uint64_t n = 8;
     while (n < 1024) n = next_check(n);
-    CHECK(film.min_taken() == n);
+    CHECK(film.min_samples_done() == n);
 }
 
 TEST_CASE("after Ctrl-C at any path each pixel is the mean of its own samples, and goes on") {
@@ -320,7 +320,7 @@ TEST_CASE("a pilot that Ctrl-C left in part is completed, and may go on with ano
                 });
                 interrupted = 0;
                 if (r.stop == Stop::samples) continue;
-                const uint64_t most = film.max_taken();
+                const uint64_t most = film.max_samples_done();
                 const bool was_pilot = film.is_pilot;
                 uint64_t passes = 0;
                 const Run on = run(film, plan_of(second), noisy, 0, [&](const Film&, auto&) {
@@ -333,7 +333,7 @@ TEST_CASE("a pilot that Ctrl-C left in part is completed, and may go on with ano
                 CHECK(on.stop == Stop::samples);
                 CHECK(!film.is_pilot);
                 if (was_pilot) CHECK(film.pilot == std::max(most, std::min<uint64_t>(second, 4)));
-                CHECK(film.min_taken() >= second);
+                CHECK(film.min_samples_done() >= second);
                 // No sample is lost, none taken twice.
                 size_t wrong = 0;
                 Tally tally;
@@ -383,7 +383,7 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
         film.near.resize(3);
         film.near[1].area = 5;
         run(film, plan_of(20, threads), leaving, 0, [&](const Film& f, const Tally&) {
-            interrupted = f.pilot > 0 && f.min_taken() > 2 ? signal : 0;
+            interrupted = f.pilot > 0 && f.min_samples_done() > 2 ? signal : 0;
         });
         interrupted = 0;
         run(film, plan_of(20, threads), leaving);

@@ -134,7 +134,7 @@ TEST_CASE("chosen weights keep the sums of the pilot; pixels where light is rare
         choose_weights(usual);
         CHECK(usual.weight == weights_of(pilot.pilot_deviation, size));
         CHECK(same(usual.sum, pilot.sum));
-        CHECK(said(usual.is_pilot, usual.pilot, usual.min_taken(), usual.max_taken(),
+        CHECK(said(usual.is_pilot, usual.pilot, usual.min_samples_done(), usual.max_samples_done(),
                    usual.pilot_deviation.capacity()) == said(false, n, 0, 0, 0));
         std::vector<size_t> noisy(600);  // some of all weights
         std::iota(noisy.begin(), noisy.end(), size_t(300));

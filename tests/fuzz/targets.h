@@ -101,7 +101,7 @@ inline void check_rays(const Scene& s, Choices c) {
     }
 }
 
-inline SampleFunction radiance_of(const Scene& s, const Options& o, const Pattern& p) {
+inline SampleFunction radiance_of(const Scene& s, const Options& o, const SamplerSettings& p) {
     return [&, far = far_of(s)](const PixelSample& at, Tally& tally) {
         const Start begin = start(s, p, at);
         if (o.view.of) return ++tally.rays, o.view.of({s, begin, meet(s, begin.ray), far});
@@ -115,7 +115,7 @@ inline void render_scene(Scene s, const Options& o, bool moderate) {
     s.depth = *o.depth;
     try {
         const Plan plan = plan_of(o, s);
-        const Pattern p = make_pattern(o.sampler, o.seed, s.depth);
+        const SamplerSettings p = sampler_settings(o.sampler, o.seed, s.depth);
         const SampleFunction L = radiance_of(s, o, p);
         check_image(render(o, plan, L).image, plan.size, true);
     } catch (const SystemError& e) {
@@ -147,7 +147,7 @@ public:
     static constexpr unsigned kinds = 4;
     static constexpr Size size{5, 3};
 
-    explicit SmallFilm(unsigned kind) : kind_(kind), p_(make_pattern(o_.sampler, 0, 2)) {
+    explicit SmallFilm(unsigned kind) : kind_(kind), p_(sampler_settings(o_.sampler, 0, 2)) {
         s_ = parse_scene(text, "s.scene").scene;
         s_.size = size;
         o_.quiet = true, o_.threads = 1;
@@ -176,7 +176,7 @@ private:
     const unsigned kind_;
     Options o_;
     Scene s_;
-    const Pattern p_;
+    const SamplerSettings p_;
     const SampleFunction L_ = radiance_of(s_, o_, p_);
 
     bool is_adaptive() const { return kind_ % 2 == 1; }
@@ -267,7 +267,7 @@ inline void film(std::string_view input) {
 
 // The mean radiance of a picture, by independent paths.
 inline Moments mean_radiance(const Scene& s, LightMode mode, uint64_t paths) {
-    const Pattern p{SamplerKind::independent, uint64_t(mode)};
+    const SamplerSettings p{SamplerKind::independent, uint64_t(mode)};
     Moments m;
     for (uint64_t i = 0; i < paths; ++i) {
         const Start at = start(s, p, {int(i % 8), int(i / 8 % 8), i / 64});

@@ -92,8 +92,8 @@ TEST_CASE("a film that was stopped anywhere, and kept, becomes what one run make
             const auto stop = int64_t(all * to_unit(hash(seed, k)));
             const Film film = fill(blank(K), 40, 3, stop);
             Keeper(folder / "a.film", of).write(film, {}, false);
-            if (film.max_taken() + film.pilot == 0) continue;
-            amid += film.min_taken() != film.max_taken(), in_pilot += film.is_pilot;
+            if (film.max_samples_done() + film.pilot == 0) continue;
+            amid += film.min_samples_done() != film.max_samples_done(), in_pilot += film.is_pilot;
             const Film on = fill(restored(folder / "a.film", blank(K)), 40);
             CAPTURE(stop);
             CHECK(same(on, whole));
@@ -286,9 +286,9 @@ TEST_CASE("a film that could be none is refused, by what is wrong") {
     CHECK(why({}, wrong, pilot) == impossible);
     for (const auto& [f, most] : {std::pair{pilot, pilot_samples}, {film, max_samples}}) {
         wrong = f;
-        wrong.taken.back() = most;
+        wrong.samples_done.back() = most;
         CHECK(why({}, wrong, f) == "");
-        wrong.taken.back() = most + 1;
+        wrong.samples_done.back() = most + 1;
         CHECK(why({}, wrong, f) == impossible);
     }
     // Other numbers than those of the head.
@@ -353,7 +353,7 @@ TEST_CASE("films are written once in an interval, and a hundredth of the time at
     // Slow writes are rare: the next one waits for 100 times the duration of the last one.
     const Film large = make_film({256, 256}, 2, false);
     Film one = large;
-    one.taken[0] = 1;
+    one.samples_done[0] = 1;
     Keeper slow(folder / "b.film", of, milliseconds(0));
     const auto start = std::chrono::steady_clock::now();
     slow.write_now_and_then(one, {});

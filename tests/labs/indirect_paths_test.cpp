@@ -23,7 +23,7 @@ Scene endless(Scene s) {
 // ---- Maps, good and bad -------------------------------------------------------------------------
 
 IlluminationMap by_particles(const Scene& s, const Mesh& mesh, uint64_t n) {
-    Particles p(s, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1000)));
+    Particles p(s, mesh, Particles::settings(SamplerKind::halton, hash(seed_here(), 1000)));
     for (size_t batch = 0; batch < Particles::batches; ++batch) p.add(batch, Particles::of_each(n));
     return p.map();
 }
@@ -103,11 +103,11 @@ IlluminationMap of_glow(const Mesh& mesh) {
 template <class RayOf>
 rgb mean_of_paths(const Gather& g, SamplerKind kind, int r, uint64_t n, RayOf ray_of) {
     const uint64_t seed = hash(seed_here(), uint64_t(r));
-    const Pattern pattern = EndlessNumbers::pattern(kind, seed),
-                  rest = EndlessNumbers::independent(seed);
+    const SamplerSettings settings = EndlessNumbers::settings(kind, seed),
+                          rest = EndlessNumbers::independent(seed);
     rgb sum;
     for (uint64_t i = 0; i < n; ++i) {
-        const Sampler first(pattern, 0, i);
+        const Sampler first(settings, 0, i);
         const EndlessNumbers u(first, Sampler(rest, 0, i));
         sum += Li(g, ray_of(first.get2(film_x)), u);
     }
@@ -165,7 +165,7 @@ TEST_CASE("control sees what whole paths see in a room with lamps") {
     const Technique roulette{Direction::bsdf, LightMode::mis, real(0.5)};
     std::vector<rgb> whole;
     for (int r = 0; r < replicates; ++r) {
-        const Pattern p = EndlessNumbers::independent(hash(seed_here(), 99 + uint64_t(r)));
+        const SamplerSettings p = EndlessNumbers::independent(hash(seed_here(), 99 + uint64_t(r)));
         rgb sum;
         for (uint64_t i = 0; i < paths; ++i) {
             const Sampler sampler(p, 0, i);
@@ -231,12 +231,12 @@ TEST_CASE("an image by control has the path tracer's mean; facets of balls chang
             found.add(image_mean(by_control(scene, spp, hash(seed_here(), seed)).image));
             NamedScene deep = scene;
             deep.depth = 64;
-            const Pattern pattern =
-                make_pattern(SamplerKind::sobol, hash(seed_here(), 100 + seed), 64);
+            const SamplerSettings settings =
+                sampler_settings(SamplerKind::sobol, hash(seed_here(), 100 + seed), 64);
             rgb sum;
             for (int pixel = 0; pixel < 32 * 16; ++pixel)
                 for (uint64_t i = 0; i < spp; ++i) {
-                    const Start at = start(deep, pattern, {pixel % 32, pixel / 32, i});
+                    const Start at = start(deep, settings, {pixel % 32, pixel / 32, i});
                     sum += Li(deep, techniques[0], at.ray, at.sampler);
                 }
             truth.add(double(mean_of(sum)) / double(32 * 16 * spp));

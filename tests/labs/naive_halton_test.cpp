@@ -32,10 +32,10 @@ double naive_sample(const Scene& s, const Technique& t, oracle::Random& random) 
 }
 
 double path_sample(const Scene& s, const Technique& t, oracle::Random& random) {
-    static const Pattern pattern{SamplerKind::independent, 7};
+    static const SamplerSettings settings{SamplerKind::independent, 7};
     static uint64_t i = 0;
     const real x = real(random()) * 8, y = real(random()) * 6;
-    const Sampler sampler(pattern, 0, ++i);
+    const Sampler sampler(settings, 0, ++i);
     return double(mean_of(Li(s, t, camera_ray(s.camera, s.size, x, y), sampler)));
 }
 

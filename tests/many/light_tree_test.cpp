@@ -119,7 +119,7 @@ TEST_CASE("what arrives is looked at for few lights and many, and always the sam
         for (size_t i = 0; i < s.lights.size(); ++i)
             CHECK(picks[i] == s.light_choice.probability_of(i, {0, 0, 1}, {0, 1, 0}));
     }
-    // So many that there is not even a look: all strengths are as they were.
+    // So many that there is not even a look: all intensities are as they were.
     std::vector<Light> many(20000, shining(Light({0, 3, 0}, PointLight()), 1));
     Scene s = hall(20);
     s.lights = many;

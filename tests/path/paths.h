@@ -12,18 +12,19 @@ namespace penumbra {
 
 // Radiance of sample i of pixel (x, y).
 template <class Visitor = NoVisitor>
-rgb radiance(const Scene& scene, const Technique& t, const Pattern& pattern, int x, int y,
+rgb radiance(const Scene& scene, const Technique& t, const SamplerSettings& settings, int x, int y,
              uint64_t i, Visitor visit = {}) {
-    const Start at = start(scene, pattern, {x, y, i});
+    const Start at = start(scene, settings, {x, y, i});
     return Li(scene, t, at.ray, at.sampler, visit);
 }
 
 // The number of rays of that path.
-inline uint64_t rays_of(const Scene& scene, const Technique& t, const Pattern& pattern, int x,
-                        int y, uint64_t i) {
+inline uint64_t rays_of(const Scene& scene, const Technique& t, const SamplerSettings& settings,
+                        int x, int y, uint64_t i) {
     uint64_t rays = 0;
-    radiance(scene, t, pattern, x, y, i,
-             [&](const Segment&, const Step& e) { rays += 1 + (e.direct.light != nullptr); });
+    radiance(scene, t, settings, x, y, i, [&](const PathState&, const VertexEvents& e) {
+        rays += 1 + (e.direct.light != nullptr);
+    });
     return rays;
 }
 

@@ -13,12 +13,12 @@ namespace {
 // Mean of an image over pixels, samples and channels.  Its standard error pools the variances
 // within pixels: one test of the whole image detects more than a test per pixel.
 oracle::Estimate image_mean(const Scene& scene, const Technique& t, uint64_t seed, uint64_t spp) {
-    const Pattern pattern{SamplerKind::independent, seed};
+    const SamplerSettings settings{SamplerKind::independent, seed};
     const auto pixel_mean = [&](int pixel) {
         const int x = pixel % scene.size.width, y = pixel / scene.size.width;
         Moments m;
         for (uint64_t i = 0; i < spp; ++i)
-            m.add(double(mean_of(radiance(scene, t, pattern, x, y, i))));
+            m.add(double(mean_of(radiance(scene, t, settings, x, y, i))));
         return m;
     };
     double sum = 0, squares = 0;
@@ -59,10 +59,10 @@ struct Decision {
     bool goes_on;
     bool operator==(const Decision&) const = default;
 };
-std::vector<Decision> decisions(const Scene& scene, const Technique& t, const Pattern& pattern,
-                                int x) {
+std::vector<Decision> decisions(const Scene& scene, const Technique& t,
+                                const SamplerSettings& settings, int x) {
     std::vector<Decision> path;
-    radiance(scene, t, pattern, x, 0, 5, [&](const Segment&, const Step& e) {
+    radiance(scene, t, settings, x, 0, 5, [&](const PathState&, const VertexEvents& e) {
         path.push_back({e.direct.light, e.direct.sample.at.p, e.wi, e.end == End::no});
     });
     return path;
@@ -80,16 +80,16 @@ int difference(const Decision& a, const Decision& b) {
 struct Purpose {
     int may, must;
 };
-Purpose purpose(Draw what, bool glossy) {
+Purpose purpose(Dimension what, bool glossy) {
     switch (what) {
-        case Draw::which_light: return {of_light | of_place, of_light};
-        case Draw::light_x:
-        case Draw::light_y: return {of_place, of_place};
-        case Draw::lobe:
+        case Dimension::which_light: return {of_light | of_place, of_light};
+        case Dimension::light_x:
+        case Dimension::light_y: return {of_place, of_place};
+        case Dimension::lobe:
             if (!glossy) return {0, 0};
             [[fallthrough]];
-        case Draw::wi_x:
-        case Draw::wi_y: return {of_direction | (glossy ? of_end : 0), of_direction};
+        case Dimension::wi_x:
+        case Dimension::wi_y: return {of_direction | (glossy ? of_end : 0), of_direction};
         default: return glossy ? Purpose{0, 0} : Purpose{of_end, of_end};
     }
 }
@@ -136,11 +136,11 @@ TEST_CASE("a furnace by cosine sampling alone has no noise") {
     scene.depth = 7;
     const Technique t{bsdf, none, 0};
     const real truth = real(0.4) * (1 - std::pow(real(0.5), real(8))) / real(0.5);
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     real worst = 0;
     for (uint64_t i = 0; i < 2000; ++i)
         worst = std::max(worst,
-                         max_abs(radiance(scene, t, pattern, 3, 2, i) - rgb{truth, truth, truth}));
+                         max_abs(radiance(scene, t, settings, 3, 2, i) - rgb{truth, truth, truth}));
     CHECK(worst < 64 * ulp);
 }
 
@@ -158,12 +158,12 @@ sphere -0.6 0 0  0.5  glass
 sphere 0.6 0 0  0.5  mirror
 )");
     const Technique t{bsdf, none, 0};
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     real worst = 0;
     for (uint64_t i = 0; i < 8; ++i)
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x) {
-                const vec3 off = radiance(scene, t, pattern, x, y, i) / real(0.8) - rgb{1, 1, 1};
+                const vec3 off = radiance(scene, t, settings, x, y, i) / real(0.8) - rgb{1, 1, 1};
                 worst = max_abs(off) <= worst ? worst : max_abs(off);
             }
     CHECK(worst < 256 * ulp);
@@ -216,11 +216,11 @@ quad 0.4 -1 0  0.6 0 0  0 1 0  lamp
 TEST_CASE("every pixel has random numbers of its own, and every bounce, and every light sample") {
     Scene scene = scene_of(glowing_room);
     scene.size = {9, 5};
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     std::vector<real> across, down;
     for (int y = 0; y < 5; ++y)
         for (int x = 0; x < 9; ++x) {
-            const vec2 u = start(scene, pattern, {x, y, 0}).u;
+            const vec2 u = start(scene, settings, {x, y, 0}).u;
             across.push_back(u.x);
             down.push_back(u.y);
         }
@@ -236,7 +236,7 @@ box 2 2 2  0  -1 -1 -1   half
 quad -0.1 0.9 -0.1  0.2 0 0  0 0 0.2   lamp
 )");
     std::vector<real> cosines, on_the_lamp;
-    radiance(scene, techniques[2], pattern, 0, 0, 0, [&](const Segment&, const Step& e) {
+    radiance(scene, techniques[2], settings, 0, 0, 0, [&](const PathState&, const VertexEvents& e) {
         if (e.end == End::no) cosines.push_back(e.scattered.wi.z);
         if (e.direct.light) on_the_lamp.push_back(e.direct.sample.at.p.x);
     });
@@ -264,17 +264,19 @@ quad -0.5 1.5 -0.5  1 0 0  0 0 1  panel
             (glossy ? "phong half 0.3 0.3 0.3  0.3 0.3 0.3  4\n" : "diffuse half 0.5 0.5 0.5\n") +
             room);
         const Technique t{bsdf, mis, real(glossy ? 0 : 1)};
-        const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), scene.depth + 1);
-        for (uint32_t dim = dimension(0, Draw(0)); dim < pattern.bases.size(); ++dim) {
-            const Draw what = Draw((dim - dimension(0, Draw(0))) % uint32_t(Draw::count));
-            const size_t k = (dim - dimension(0, Draw(0))) / uint32_t(Draw::count);
+        const SamplerSettings settings =
+            sampler_settings(SamplerKind::halton, seed_here(), scene.depth + 1);
+        for (uint32_t dim = dimension(0, Dimension(0)); dim < settings.bases.size(); ++dim) {
+            const Dimension what =
+                Dimension((dim - dimension(0, Dimension(0))) % uint32_t(Dimension::count));
+            const size_t k = (dim - dimension(0, Dimension(0))) / uint32_t(Dimension::count);
             const bool last = int(k) == scene.depth;  // the path ends here anyway
             const auto [may, must] = last ? Purpose{0, 0} : purpose(what, glossy);
-            Pattern other = pattern;
+            SamplerSettings other = settings;
             other.bases[dim] = 2;  // all bases are greater than 2
             int moved = 0, wrong = 0;
             for (int x = 0; x < scene.size.width; ++x) {
-                const auto a = decisions(scene, t, pattern, x), b = decisions(scene, t, other, x);
+                const auto a = decisions(scene, t, settings, x), b = decisions(scene, t, other, x);
                 const size_t before = std::min(k, a.size());
                 wrong += b.size() < before ||
                          !std::equal(a.begin(), a.begin() + long(before), b.begin());
@@ -310,25 +312,25 @@ quad -2000 0 -2000  0 0 4000  4000 0 0  white
 sphere 0.3 0.5 0  0.2  ball
 sphere -0.5 0.4 0.2  0.1  ball
 )");
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     int hits = 0;
     real worst = 0;
     for (int i = 0; i < 800; ++i) {
         const Technique t{uniform, mis, 0};
         const int x = i / 2 % 20, y = i / 40;
-        const Start at = start(scene, pattern, {x, y, 0});
+        const Start at = start(scene, settings, {x, y, 0});
         const auto ground = meet(scene, at.ray);
         if (!ground || ground->material->emits()) continue;
         const DirectLight aimed = direct_light(scene, t, *ground, at.sampler, 0);
         if (!aimed.light) continue;
         const vec3 wi = ground->local.to_local(aimed.sample.wi);
         const real density = pdf(*ground->material, ground->wo, wi, t.direction);
-        const Segment s{spawn(ground->at, aimed.sample.wi),
-                        ground->at.p,
-                        density,
-                        {1, 1, 1},
-                        1,
-                        ground->local.n};
+        const PathState s{spawn(ground->at, aimed.sample.wi),
+                          ground->at.p,
+                          density,
+                          {1, 1, 1},
+                          1,
+                          ground->local.n};
         const auto lamp = meet(scene, s.ray);
         if (!lamp || &scene.lights[size_t(scene.light_of[lamp->hit.id])] != aimed.light) continue;
         worst =
@@ -352,11 +354,11 @@ quad -9 0 -9  18 0 0  0 0 18  white
 quad -9 3 9  0 0 -18  18 0 0  gloss
 sphere 1 1 0  0.7  lamp
 )");
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     int steps = 0, wrong = 0;
     for (int i = 0; i < 256; ++i)
-        radiance(scene, {bsdf, mis, 0}, pattern, i % 16, i / 16, 0,
-                 [&](const Segment&, const Step& e) {
+        radiance(scene, {bsdf, mis, 0}, settings, i % 16, i / 16, 0,
+                 [&](const PathState&, const VertexEvents& e) {
                      if (e.end != End::no) return;
                      const Surface& at = e.vertex.at;
                      ++steps;
@@ -419,11 +421,11 @@ TEST_CASE("Russian roulette keeps paths at its threshold T: the rays that they h
     // more.  The next bounce has survival probability 2^-(m+1) / T, and each later one 1/2.
     Scene scene = scene_of(glowing_room);
     scene.depth = 1000;
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     for (const auto& [threshold, mean] : {std::pair{1., 2.}, {0.7, 1 + 1 / 0.7}, {0.25, 4.}}) {
         Moments rays;
         for (uint64_t i = 0; i < 20000; ++i)
-            rays.add(double(rays_of(scene, {bsdf, none, real(threshold)}, pattern, 1, 1, i)));
+            rays.add(double(rays_of(scene, {bsdf, none, real(threshold)}, settings, 1, 1, i)));
         EXPECT(oracle::expect_mean(mean, estimate(rays)), 0.05);
     }
 }
@@ -432,12 +434,12 @@ TEST_CASE("Russian roulette ends no path in clear glass, which takes nothing awa
     Scene scene = scene_of(
         "size 8 4\ncamera 0 0 5  0 0 0  30\nglass diamond 2.4\nsphere 0 0 0  1  diamond\n");
     scene.depth = 1000;
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     int within = 0;
     for (uint64_t i = 0; i < 1000; ++i) {
-        const Start at = start(scene, pattern, {4, 2, i});
+        const Start at = start(scene, settings, {4, 2, i});
         Li(scene, {bsdf, none, real(0.9)}, at.ray, at.sampler,
-           [&](const Segment& s, const Step& e) {
+           [&](const PathState& s, const VertexEvents& e) {
                CHECK(e.end != End::roulette);
                within += e.met && s.k > 0;
            });
@@ -493,12 +495,13 @@ TEST_CASE("quasi-random and stratified samples find what independent ones find")
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::halton, SamplerKind::sobol}) {
         // A replication is one randomisation of every pixel's whole point set.
         const auto replicate = [&, first = seed_here()](int k) {
-            const Pattern pattern = make_pattern(kind, first + uint64_t(k), scene.depth);
+            const SamplerSettings settings =
+                sampler_settings(kind, first + uint64_t(k), scene.depth);
             double sum = 0;
             for (int y = 0; y < scene.size.height; ++y)
                 for (int x = 0; x < scene.size.width; ++x)
                     for (uint64_t i = 0; i < 16; ++i)
-                        sum += double(mean_of(radiance(scene, t, pattern, x, y, i)));
+                        sum += double(mean_of(radiance(scene, t, settings, x, y, i)));
             return sum / (16.0 * scene.size.width * scene.size.height);
         };
         Moments replicates;

@@ -8,14 +8,14 @@
 namespace {
 
 constexpr int depth = 8;
-const uint32_t dimensions = dimension(depth, Draw::light_x);
+const uint32_t dimensions = dimension(depth, Dimension::light_x);
 
 // Draws like the path tracer: pairs where it takes pairs, choices where it makes choices.
 real draw(const Sampler& s, uint32_t dim) {
     if (dim < 2) return dim == 0 ? s.get2(0).x : s.get2(0).y;
-    const uint32_t k = (dim - 2) % uint32_t(Draw::count);
-    if (Draw(k) == Draw::which_light || Draw(k) == Draw::lobe)
-        return s.choice(int((dim - 2) / uint32_t(Draw::count)), Draw(k));
+    const uint32_t k = (dim - 2) % uint32_t(Dimension::count);
+    if (Dimension(k) == Dimension::which_light || Dimension(k) == Dimension::lobe)
+        return s.choice(int((dim - 2) / uint32_t(Dimension::count)), Dimension(k));
     if (k < 4) return k % 2 == 0 ? s.get2(dim).x : s.get2(dim - 1).y;
     return s.get(dim);
 }
@@ -25,28 +25,28 @@ real draw(const Sampler& s, uint32_t dim) {
 TEST_CASE("every number of a path has a dimension of its own, in the order of the path") {
     uint32_t next = film_y + 1;
     for (int vertex = 0; vertex < 1000; ++vertex)
-        for (uint32_t what = 0; what < uint32_t(Draw::count); ++what)
-            CHECK(dimension(vertex, Draw(what)) == next++);
+        for (uint32_t what = 0; what < uint32_t(Dimension::count); ++what)
+            CHECK(dimension(vertex, Dimension(what)) == next++);
 }
 
 TEST_CASE("seed, pixel, set, sample, dimension: whichever is another, the number is another") {
     for (SamplerKind kind : samplers) {
-        const Pattern pattern = make_pattern(kind, 5, depth);
-        const Pattern reseeded = make_pattern(kind, 6, depth);
+        const SamplerSettings settings = sampler_settings(kind, 5, depth);
+        const SamplerSettings reseeded = sampler_settings(kind, 6, depth);
         int equal = 0;
         for (uint64_t pixel = 0; pixel < 100; ++pixel)
             for (uint32_t dim : {0u, 2u, 7u}) {
-                const real u = Sampler(pattern, pixel, 3).get(dim);
-                CHECK(u == Sampler(pattern, pixel, 3, 0).get(dim));
+                const real u = Sampler(settings, pixel, 3).get(dim);
+                CHECK(u == Sampler(settings, pixel, 3, 0).get(dim));
                 equal += u == Sampler(reseeded, pixel, 3).get(dim);
-                equal += u == Sampler(pattern, pixel + 1, 3).get(dim);
-                equal += u == Sampler(pattern, pixel, 4).get(dim);
+                equal += u == Sampler(settings, pixel + 1, 3).get(dim);
+                equal += u == Sampler(settings, pixel, 4).get(dim);
                 for (uint32_t set : {1u, 2u, 7u}) {
-                    const real of_set = Sampler(pattern, pixel, 3, set).get(dim);
+                    const real of_set = Sampler(settings, pixel, 3, set).get(dim);
                     equal += u == of_set;
-                    equal += of_set == Sampler(pattern, pixel + 1, 3).get(dim);
+                    equal += of_set == Sampler(settings, pixel + 1, 3).get(dim);
                 }
-                equal += u == Sampler(pattern, pixel, 3).get(dim + 1);
+                equal += u == Sampler(settings, pixel, 3).get(dim + 1);
             }
         // One of 3000 pairs of 24-bit numbers is equal by chance with a probability of 1.8e-4.
         INFO(std::string(sampler_names[int(kind)]));
@@ -64,12 +64,12 @@ TEST_CASE("a number of the last cell never rounds to 1") {
 TEST_CASE("every number of every sampler is uniform over [0,1)") {
     // The check is over pixels, because these are independent, for every sample index i.
     for (SamplerKind kind : samplers) {
-        const Pattern pattern = make_pattern(kind, seed_here(), depth);
+        const SamplerSettings settings = sampler_settings(kind, seed_here(), depth);
         for (uint32_t dim = 0; dim < dimensions; ++dim)
             for (uint64_t sample : {0, 1, 5, 63}) {
                 std::vector<uint64_t> cells(16);
                 for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
-                    ++cells[part(16, draw(Sampler(pattern, pixel, sample), dim))];
+                    ++cells[part(16, draw(Sampler(settings, pixel, sample), dim))];
                 }
                 const std::string what = sampler_names[int(kind)];
                 EXPECT(expect_alike(cells).of(what), 0.2);
@@ -82,13 +82,13 @@ TEST_CASE("dimensions of a path and neighbouring pixels are uncorrelated") {
     // 0 and variance 1/144.  A replication is the sum over one pixel, because its samples are
     // dependent.  Each dimension meets the next three, so that each pair meets the next pair.
     for (SamplerKind kind : samplers) {
-        const Pattern pattern = make_pattern(kind, seed_here(), depth);
+        const SamplerSettings settings = sampler_settings(kind, seed_here(), depth);
         Moments between_dimensions, between_pixels;
         for (uint64_t pixel = 0; pixel < 1000; ++pixel) {
             double dims = 0, pixels = 0;
             for (uint64_t sample = 0; sample < 16; ++sample) {
-                const Sampler here(pattern, 2 * pixel, sample),
-                    there(pattern, 2 * pixel + 1, sample);
+                const Sampler here(settings, 2 * pixel, sample),
+                    there(settings, 2 * pixel + 1, sample);
                 real last[3] = {};
                 for (uint32_t dim = 0; dim < dimensions; ++dim) {
                     const real u = draw(here, dim), v = draw(there, dim);
@@ -113,17 +113,18 @@ TEST_CASE("no two numbers of a path come in the same order") {
     // that of independent numbers.  One order for both would make it 3.2 or more on average: for v
     // = u + c modulo 1 the mean product is B2(c) / 2, its square 1 / 720, times 16 * 144.
     for (SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
-        const Pattern pattern = make_pattern(kind, seed_here(), depth);
-        for (uint32_t dim :
-             {film_x, film_y, dimension(0, Draw::light_x), dimension(1, Draw::which_light),
-              dimension(1, Draw::lobe), dimension(1, Draw::roulette)})
-            for (uint32_t other : {dimension(2, Draw::wi_x), dimension(3, Draw::light_y),
-                                   dimension(2, Draw::lobe), dimension(3, Draw::roulette)}) {
+        const SamplerSettings settings = sampler_settings(kind, seed_here(), depth);
+        for (uint32_t dim : {film_x, film_y, dimension(0, Dimension::light_x),
+                             dimension(1, Dimension::which_light), dimension(1, Dimension::lobe),
+                             dimension(1, Dimension::roulette)})
+            for (uint32_t other :
+                 {dimension(2, Dimension::wi_x), dimension(3, Dimension::light_y),
+                  dimension(2, Dimension::lobe), dimension(3, Dimension::roulette)}) {
                 double squares = 0;
                 for (uint64_t pixel = 0; pixel < 2000; ++pixel) {
                     double sum = 0;
                     for (uint64_t sample = 0; sample < 16; ++sample) {
-                        const Sampler s(pattern, pixel, sample);
+                        const Sampler s(settings, pixel, sample);
                         sum += (double(draw(s, dim)) - 0.5) * (double(draw(s, other)) - 0.5);
                     }
                     squares += sum * sum * 144 / 16 / 2000;
@@ -136,11 +137,11 @@ TEST_CASE("no two numbers of a path come in the same order") {
 
 TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
     // The first 2 * 3 samples of every pixel lie in different boxes of a 2 x 3 grid on the film.
-    const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), depth);
+    const SamplerSettings settings = sampler_settings(SamplerKind::halton, seed_here(), depth);
     for (uint64_t pixel = 0; pixel < 1000; ++pixel) {
         int boxes[6] = {};
         for (uint64_t i = 0; i < 6; ++i) {
-            const vec2 u = Sampler(pattern, pixel, i).get2(film_x);
+            const vec2 u = Sampler(settings, pixel, i).get2(film_x);
             ++boxes[part(2, u.x) * 3 + part(3, u.y)];
         }
         for (int b : boxes) REQUIRE(b == 1);
@@ -149,27 +150,29 @@ TEST_CASE("Halton points of one pixel fill pairs of dimensions evenly") {
     for (uint32_t dim = 0; dim < dimensions; ++dim) {
         const uint32_t b = first_primes(dimensions)[dim];
         std::vector<int> parts(b);
-        for (uint64_t i = 0; i < b; ++i) ++parts[part(b, Sampler(pattern, 3, i).get(dim))];
+        for (uint64_t i = 0; i < b; ++i) ++parts[part(b, Sampler(settings, 3, i).get(dim))];
         CAPTURE(dim);
         CHECK(parts == std::vector<int>(b, 1));
     }
 }
 
 TEST_CASE("Sobol' points of one pixel fill every elementary interval, every set's its own") {
-    const Pattern pattern = make_pattern(SamplerKind::sobol, seed_here(), depth);
+    const SamplerSettings settings = sampler_settings(SamplerKind::sobol, seed_here(), depth);
     for (uint64_t pixel = 0; pixel < 100; ++pixel)
         for (uint32_t set : {0u, 1u, 7u})
-            for (uint32_t dim : {film_x, dimension(0, Draw::light_x), dimension(4, Draw::wi_x)}) {
+            for (uint32_t dim :
+                 {film_x, dimension(0, Dimension::light_x), dimension(4, Dimension::wi_x)}) {
                 int boxes[5][16] = {}, parts[16] = {}, cubes[2][8] = {};
                 for (uint64_t i = 32; i < 48; ++i) {
-                    const Sampler s(pattern, pixel, i, set);
+                    const Sampler s(settings, pixel, i, set);
                     const vec2 u = s.get2(dim);
                     for (uint64_t c : {0, 1, 2, 3, 4})  // 2^c columns
                         ++boxes[c][(part(1u << c, u.x) << (4 - c)) + part(16u >> c, u.y)];
-                    ++parts[part(16, draw(s, dimension(2, Draw::which_light)))];
-                    for (Draw choice : {Draw::which_light, Draw::lobe}) {
-                        const uint32_t k = choice == Draw::lobe;
-                        const vec2 v = s.get2(dimension(1, k ? Draw::wi_x : Draw::light_x));
+                    ++parts[part(16, draw(s, dimension(2, Dimension::which_light)))];
+                    for (Dimension choice : {Dimension::which_light, Dimension::lobe}) {
+                        const uint32_t k = choice == Dimension::lobe;
+                        const vec2 v =
+                            s.get2(dimension(1, k ? Dimension::wi_x : Dimension::light_x));
                         const uint64_t z = part(2, draw(s, dimension(1, choice)));
                         ++cubes[k][part(2, v.x) * 4 + part(2, v.y) * 2 + z];
                     }
@@ -194,7 +197,7 @@ TEST_CASE("a cell is a part of the unit square, in grids of all shapes") {
 }
 
 TEST_CASE("each 16 stratified samples have one in every cell of every grid") {
-    const Pattern p = make_pattern(SamplerKind::stratified, seed_here(), depth);
+    const SamplerSettings p = sampler_settings(SamplerKind::stratified, seed_here(), depth);
     for (uint64_t pixel = 0; pixel < 100; ++pixel)
         for (uint32_t set : {0u, 1u, 7u})
             for (uint64_t grid : {0, 5}) {
@@ -203,14 +206,14 @@ TEST_CASE("each 16 stratified samples have one in every cell of every grid") {
                     const Sampler s(p, pixel, i, set);
                     const vec2 u = s.get2(film_x);
                     ++film[part(4, u.y) * 4 + part(4, u.x)];
-                    ++pick[part(16, s.get(dimension(3, Draw::which_light)))];
+                    ++pick[part(16, s.get(dimension(3, Dimension::which_light)))];
                 }
                 for (size_t c = 0; c < 16; ++c) REQUIRE((film[c] == 1 && pick[c] == 1));
             }
 }
 
 TEST_CASE("every pass shuffles its cells anew") {
-    const Pattern p = make_pattern(SamplerKind::stratified, 3, depth);
+    const SamplerSettings p = sampler_settings(SamplerKind::stratified, 3, depth);
     int alike = 0;  // passes of equal order: by chance 1 in 16!
     for (uint64_t pixel = 0; pixel < 100; ++pixel) {
         bool same = true;
@@ -251,10 +254,10 @@ TEST_CASE("permute is a permutation, and takes every value at every place equall
 
 TEST_CASE("the samples of a set are one point set") {
     for (SamplerKind kind : {SamplerKind::halton, SamplerKind::sobol}) {
-        const Pattern pattern = make_pattern(kind, seed_here(), depth);
+        const SamplerSettings settings = sampler_settings(kind, seed_here(), depth);
         for (uint64_t pixel = 0; pixel < 100; ++pixel) {
-            const real c = Sampler(pattern, pixel, 0, 3).get(0),
-                       d = Sampler(pattern, pixel, 1, 3).get(0);
+            const real c = Sampler(settings, pixel, 0, 3).get(0),
+                       d = Sampler(settings, pixel, 1, 3).get(0);
             CHECK(part(2, c) != part(2, d));
         }
     }
@@ -264,13 +267,13 @@ TEST_CASE("means over a set are uncorrelated with those of the pixel's other set
     // Products (mean - 1/2)(mean of another replication - 1/2), over the RMS of the means: 1 if
     // both had the same randomisation.
     for (SamplerKind kind : samplers) {
-        const Pattern pattern = make_pattern(kind, seed_here(), depth);
+        const SamplerSettings settings = sampler_settings(kind, seed_here(), depth);
         Moments products, squares;
         for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
             double mean[2] = {};
             for (uint32_t set : {0u, 1u})
                 for (uint64_t i = 0; i < 5; ++i)  // part of a net of 16: means differ
-                    mean[set] += (double(draw(Sampler(pattern, pixel, i, set), 2)) - 0.5) / 5;
+                    mean[set] += (double(draw(Sampler(settings, pixel, i, set), 2)) - 0.5) / 5;
             products.add(mean[0] * mean[1]);
             squares.add(mean[0] * mean[0]);
         }
@@ -282,11 +285,11 @@ TEST_CASE("means over a set are uncorrelated with those of the pixel's other set
 TEST_CASE("samples 2^32 apart differ, whatever the sampler, in every set") {
     for (SamplerKind kind : samplers)
         for (uint32_t set : {0u, 1u}) {
-            const Pattern pattern = make_pattern(kind, seed_here(), depth);
+            const SamplerSettings settings = sampler_settings(kind, seed_here(), depth);
             int equal = 0;
             for (uint64_t i = 0; i < 100; ++i)
                 for (uint64_t far : {uint64_t(1) << 32, uint64_t(1) << 33}) {
-                    const Sampler near(pattern, 7, i, set), beyond(pattern, 7, i + far, set);
+                    const Sampler near(settings, 7, i, set), beyond(settings, 7, i + far, set);
                     // This dimension has base 3: in base 2 only the digits from the 33rd on differ.
                     equal += near.get2(film_x).y == beyond.get2(film_x).y;
                 }
@@ -297,11 +300,11 @@ TEST_CASE("samples 2^32 apart differ, whatever the sampler, in every set") {
 
 TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in every pixel") {
     // Samples 1 and 0 have the first digits 1 and 0: after scrambling they differ by the factor.
-    const Pattern pattern = make_pattern(SamplerKind::halton, seed_here(), depth);
+    const SamplerSettings settings = sampler_settings(SamplerKind::halton, seed_here(), depth);
     auto factor = [&](uint64_t pixel, uint32_t dim) {
-        const uint32_t base = pattern.bases[dim];
+        const uint32_t base = settings.bases[dim];
         auto digit = [&](uint64_t i) {
-            return uint32_t(Sampler(pattern, pixel, i).get(dim) * real(base) * (1 + 8 * ulp));
+            return uint32_t(Sampler(settings, pixel, i).get(dim) * real(base) * (1 + 8 * ulp));
         };
         return (digit(1) + base - digit(0)) % base;
     };
@@ -311,7 +314,7 @@ TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in e
     for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
         double sum = 0, products = 0, last = 0;
         for (uint32_t dim = 5; dim < dimensions; ++dim) {
-            const double place = (factor(pixel, dim) - 0.5) / (pattern.bases[dim] - 1) - 0.5;
+            const double place = (factor(pixel, dim) - 0.5) / (settings.bases[dim] - 1) - 0.5;
             sum += place;
             products += place * last;
             last = place;
@@ -322,7 +325,7 @@ TEST_CASE("Halton digits are multiplied by a factor of the dimension's own, in e
     EXPECT(oracle::expect_mean(0, estimate(places)).of("place"), 0.02);
     EXPECT(oracle::expect_mean(0, estimate(between_dimensions)).of("dimensions"), 0.02 / 12);
     for (uint32_t dim : {1u, 2u, 3u}) {
-        std::vector<uint64_t> counts(pattern.bases[dim] - 1);
+        std::vector<uint64_t> counts(settings.bases[dim] - 1);
         for (uint64_t pixel = 0; pixel < 4000; ++pixel) {
             const uint32_t f = factor(pixel, dim);
             REQUIRE(f > 0);

@@ -5,14 +5,14 @@
 
 using namespace penumbra;
 
-TEST_CASE("a pattern that would be gone before its samples is refused") {
-    CHECK(!std::is_constructible_v<Sampler, Pattern, uint64_t, uint64_t>);
+TEST_CASE("settings that would be gone before their samples are refused") {
+    CHECK(!std::is_constructible_v<Sampler, SamplerSettings, uint64_t, uint64_t>);
     auto starts = [](auto&& p) {
         return requires(const Scene& s) { start(s, std::forward<decltype(p)>(p), PixelSample()); };
     };
-    Pattern stays;
+    SamplerSettings stays;
     CHECK(starts(stays));
-    CHECK(!starts(Pattern()));
+    CHECK(!starts(SamplerSettings()));
 }
 
 TEST_CASE("a sample stays in its pixel, however wide the picture is") {

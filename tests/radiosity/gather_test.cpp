@@ -45,8 +45,8 @@ TEST_CASE("known light is rho E / pi on both sides of every face") {
 TEST_CASE("maps that are exact leave nothing to chance: a furnace, its light found by hitting") {
     const Scene s = glowing();
     const KnownLight known = maps_of(s, grey(1));
-    const Pattern pattern = make_pattern(SamplerKind::independent, seed_here(), 1);
-    const SampleFunction L = final_gather(s, by_hitting, known, pattern);
+    const SamplerSettings settings = sampler_settings(SamplerKind::independent, seed_here(), 1);
+    const SampleFunction L = final_gather(s, by_hitting, known, settings);
     for (uint64_t i = 0; i < 200; ++i) {
         Tally tally;
         CHECK(double(L({int(i % 8), int(i / 8 % 8), i}, tally).x) == approx(glow));
@@ -64,8 +64,9 @@ TEST_CASE("paths end on what the maps hold, whatever that is") {
                 constexpr int replicates = 256;
                 std::vector<rgb> means;
                 for (int r = 0; r < replicates; ++r) {
-                    const Pattern pattern = make_pattern(kind, hash(seed_here(), uint64_t(r)), 1);
-                    const SampleFunction L = final_gather(s, t, known, pattern);
+                    const SamplerSettings settings =
+                        sampler_settings(kind, hash(seed_here(), uint64_t(r)), 1);
+                    const SampleFunction L = final_gather(s, t, known, settings);
                     rgb sum;
                     Tally tally;
                     for (uint64_t i = 0; i < n; ++i) sum += L({3, 4, i}, tally);

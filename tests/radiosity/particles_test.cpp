@@ -17,7 +17,7 @@ constexpr double Pi = std::numbers::pi;
 
 // A complete run of n particles; its seed depends on the test's name.
 Particles run(const Meshed& m, SamplerKind kind, uint64_t n, uint64_t seed) {
-    Particles p(m.scene, m.mesh, Particles::pattern(kind, hash(seed_here(), seed)));
+    Particles p(m.scene, m.mesh, Particles::settings(kind, hash(seed_here(), seed)));
     for (size_t batch = 0; batch < Particles::batches; ++batch)
         p.add(batch, n / Particles::batches);
     return p;
@@ -136,7 +136,7 @@ TEST_CASE("what is emitted is absorbed or escapes: coloured, open and closed, ev
 
 TEST_CASE("many particles are as exact as one: their sums do not lose what is small beside them") {
     const Meshed m(scene_of_quads({{{}, {1, 0, 0}, {0, 1, 0}, diffuse(grey(0), grey(1))}}), 9);
-    Particles p(m.scene, m.mesh, Particles::pattern(SamplerKind::independent, 1));
+    Particles p(m.scene, m.mesh, Particles::settings(SamplerKind::independent, 1));
     p.add(0, 100000);
     CHECK(double(p.balance().emitted.x) == approx(Pi, 1e-10, 1e-6));
     CHECK(p.balance().escaped == p.balance().emitted);
@@ -171,7 +171,7 @@ TEST_CASE("the sums are the same, bit for bit, for any number of threads and pas
         CHECK((one.particles() == 3200 && one.of_each() == 200));
         CHECK(one.rays() > one.particles());
         for (unsigned threads : {1u, 2u, 3u, 5u}) {
-            Particles p(m.scene, m.mesh, Particles::pattern(kind, hash(seed_here(), 1)));
+            Particles p(m.scene, m.mesh, Particles::settings(kind, hash(seed_here(), 1)));
             for (uint64_t n : {8, 64, 128})
                 by_workers(
                     Particles::batches, threads, [&](size_t b, unsigned) { p.add(b, n); },
@@ -188,17 +188,17 @@ TEST_CASE("the sums are the same, bit for bit, for any number of threads and pas
 
 TEST_CASE("batches are randomisations of their own; without one there is no error to tell") {
     const Meshed m(study(true), 1);
-    const Pattern pattern = Particles::pattern(SamplerKind::halton, 1);
+    const SamplerSettings settings = Particles::settings(SamplerKind::halton, 1);
     std::vector<IlluminationMap> maps;
     for (size_t batch : {0u, 1u, 15u}) {
-        Particles p(m.scene, m.mesh, pattern);
+        Particles p(m.scene, m.mesh, settings);
         p.add(batch, 100);
         CHECK(std::isnan(p.error()));
         maps.push_back(p.map());
     }
     CHECK(maps[0] != maps[1]);
     CHECK(maps[1] != maps[2]);
-    Particles stopped(m.scene, m.mesh, pattern);
+    Particles stopped(m.scene, m.mesh, settings);
     interrupted = 1;
     stopped.add(0, 100);
     interrupted = 0;

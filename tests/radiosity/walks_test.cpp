@@ -18,8 +18,8 @@ CommonOptions quietly(unsigned threads = 1) {
 
 Walked walk_to(const Meshed& m, const WalksTarget& target, uint64_t seed,
                SamplerKind kind = SamplerKind::halton) {
-    const Pattern pattern = Particles::pattern(kind, hash(seed_here(), seed));
-    return walk_all(m.scene, m.mesh, pattern, target, quietly());
+    const SamplerSettings settings = Particles::settings(kind, hash(seed_here(), seed));
+    return walk_all(m.scene, m.mesh, settings, target, quietly());
 }
 
 constexpr uint64_t first_look = ErrorTarget::least * Particles::batches;
@@ -133,9 +133,9 @@ TEST_CASE("--error alone: where no particle loses light the run ends with a mess
 
 TEST_CASE("--error: the run is the same for any number of threads, and that of as many particles") {
     const Meshed m(furnace(), 1);
-    const Pattern pattern = Particles::pattern(SamplerKind::halton, 1);
+    const SamplerSettings settings = Particles::settings(SamplerKind::halton, 1);
     auto walk = [&](const WalksTarget& target, unsigned threads) {
-        return walk_all(m.scene, m.mesh, pattern, target, quietly(threads));
+        return walk_all(m.scene, m.mesh, settings, target, quietly(threads));
     };
     const Walked one = walk({0, 0, 0.015}, 1);
     CHECK(one.particles > first_look);

@@ -29,8 +29,8 @@ Picture render(const Scene& scene, Estimator e, uint64_t n, uint64_t seed, uint3
     Options o;
     o.replications = K, o.spp = n * K, o.threads = threads, o.quiet = true;
     const Plan plan = plan_at_once(o, scene);
-    const Pattern pattern = make_pattern(kind, seed, scene.depth);
-    const SampleFunction L = shadow_estimate(scene, nee, pattern, e, n);
+    const SamplerSettings settings = sampler_settings(kind, seed, scene.depth);
+    const SampleFunction L = shadow_estimate(scene, nee, settings, e, n);
     return render(o, plan, L);
 }
 
@@ -58,9 +58,9 @@ TEST_CASE("estimates: all of them find what paths find; their parts are those of
             else
                 EXPECT(oracle::expect_equal(estimate(means), reference), 0.3);
         }
-        const Pattern pattern{SamplerKind::independent, 5};
+        const SamplerSettings settings{SamplerKind::independent, 5};
         for (uint64_t i = 0; i < 200; ++i) {
-            const Start at = start(scene, pattern, {int(i % 8), int(i / 8 % 8), i});
+            const Start at = start(scene, settings, {int(i % 8), int(i / 8 % 8), i});
             const rgb plain = Li(scene, nee, at.ray, at.sampler);
             const ShadowSample s = shadow_Li(scene, nee, at, NoVisitor{});
             CHECK(double(max_abs(s.rest + s.first.wV - plain)) < 1e-5);
@@ -117,11 +117,11 @@ TEST_CASE("estimates do not depend on threads, and take the samples of each repl
             CHECK(two.run.replications == 2);
             // A path has a camera ray, a shadow ray and a scattered ray.
             CHECK(two.run.rays == 3 * n * 2 * two.image.pixels.size());
-            const Pattern pattern = make_pattern(kind, 7, scene.depth);
+            const SamplerSettings settings = sampler_settings(kind, 7, scene.depth);
             double sum = 0;
             for (uint32_t set : {0u, 1u}) {
                 const ShadowMoments m = moments_of(n, [&, i = uint64_t(0)]() mutable {
-                    const Start at = start(scene, pattern, {2, 1, i++, set});
+                    const Start at = start(scene, settings, {2, 1, i++, set});
                     const Shadowed s = shadow_Li(scene, nee, at, NoVisitor{}).first;
                     return std::array{s.U.z, s.w.z, s.wV.z};
                 });

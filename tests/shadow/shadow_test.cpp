@@ -17,12 +17,12 @@ struct Receiver {
     Material material;
 
     // The step of a path at the receiver, with direct light only.
-    Step sample(uint64_t i, uint64_t seed = 1) const {
-        const Pattern pattern{SamplerKind::independent, seed};
-        Step e;
+    VertexEvents sample(uint64_t i, uint64_t seed = 1) const {
+        const SamplerSettings settings{SamplerKind::independent, seed};
+        VertexEvents e;
         e.met = true, e.vertex = Vertex{{}, x, &material, 1, local, {0, 0, 1}};
         e.direct = direct_light(scene, {Direction::bsdf, LightMode::nee, 0}, e.vertex,
-                                Sampler(pattern, 0, i), 0);
+                                Sampler(settings, 0, i), 0);
         return e;
     }
     Shadowed shadowed_sample(uint64_t i, uint64_t seed = 1) const {

@@ -135,12 +135,12 @@ TEST_CASE("what a killed process left beside a file goes; what a living one writ
          {nobody + dead, ".b.pfm." + std::string(host) + ".part" + dead, nobody, nobody + parent,
           "a.pfm.part" + dead, ".a.pfm.another" + std::string(host) + ".part" + dead})
         folder.write(name, "half");
-    REQUIRE(aside(folder / "a.pfm") == folder / (nobody + std::to_string(::getpid())));
+    REQUIRE(temporary_path(folder / "a.pfm") == folder / (nobody + std::to_string(::getpid())));
     check_writable(folder / "a.pfm");
     CHECK_FALSE(folder.has(nobody + dead));
     CHECK(folder.files() == 5);
     // An earlier process with the same number left this file; none of its bytes may survive.
-    std::ofstream(aside(folder / "a.pfm")) << "half";
+    std::ofstream(temporary_path(folder / "a.pfm")) << "half";
     write_file(folder / "a.pfm", "x");
     CHECK(folder.read("a.pfm") == "x");
     CHECK(folder.files() == 6);
@@ -188,7 +188,7 @@ TEST_CASE("a file that cannot be written whole leaves the old one, and nothing b
     CHECK_THROWS_AS(write_file(folder / "b.pfm", "x"), SystemError);
     CHECK(folder.files() == 2);
     CHECK(fs::is_empty(folder / "b.pfm"));
-    fs::create_directory(aside(path));  // the first step fails
+    fs::create_directory(temporary_path(path));  // the first step fails
     CHECK_THROWS_AS(write_file(path, "x"), SystemError);
     CHECK(read_file(path) == "new and longer");
 }

@@ -11,7 +11,7 @@
 namespace {
 
 // Sums over pixels of what one path from the eye, and one from light 0, bring.
-double came(const Scene& s, const Pattern& pattern, uint64_t i) {
+double came(const Scene& s, const SamplerSettings& settings, uint64_t i) {
     const std::vector<size_t> group_of = light_groups(s);
     std::vector<NearMisses> groups(s.lights.size());
     for (NearMisses& g : groups) g.from_light.sum = 1;
@@ -19,7 +19,7 @@ double came(const Scene& s, const Pattern& pattern, uint64_t i) {
     tally.near.resize(groups.size());
     const uint64_t w = uint64_t(s.size.width), pixels = w * uint64_t(s.size.height);
     const int x = int(i % pixels % w), y = int(i % pixels / w);
-    radiance(s, {}, pattern, x, y, i, NearMissVisitor{s, groups, group_of, tally});
+    radiance(s, {}, settings, x, y, i, NearMissVisitor{s, groups, group_of, tally});
     return std::ldexp(double(tally.near[0].from_light.came), -40) * double(pixels);
 }
 double sent(const Scene& s, const Aims& aims, uint64_t key) {
@@ -72,7 +72,7 @@ TEST_CASE("paths from a light and paths from the eye bring the same to the pictu
         if (kind == 2) add_triangle(s, above, above + u, above + v, 4);
         if (kind == 3) add_quad(s, above, u, v, 3);
         prepare(s);
-        const Pattern pattern{SamplerKind::independent, ++seed};
+        const SamplerSettings settings{SamplerKind::independent, ++seed};
         uint64_t i = 0, k = hash(seed, 1);
         auto of_many = [](auto f) {
             double sum = 0;
@@ -82,7 +82,7 @@ TEST_CASE("paths from a light and paths from the eye bring the same to the pictu
         for (const Aims& aims : {Aims(s), Aims(Scene())}) {
             INFO(kind);
             EXPECT(oracle::expect_equal(
-                       [&] { return of_many([&] { return came(s, pattern, i++); }); },
+                       [&] { return of_many([&] { return came(s, settings, i++); }); },
                        [&] { return of_many([&] { return sent(s, aims, k++); }); }, 450),
                    0.06);
         }

@@ -42,11 +42,11 @@ std::vector<NearMisses> misses_of(const Scene& s, const Technique& t, uint64_t n
     const LightRecorder recorder(s, t, 0, s.size.height);
     Tally tally;
     tally.share = 1 / K, tally.near = recorder.near_misses(1);
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     for (int y = 0; y < s.size.height; ++y)
         for (int x = 0; x < s.size.width; ++x)
             for (uint64_t i = 0; i < n; ++i)
-                radiance(s, t, pattern, x, y, i, recorder.visitor(tally));
+                radiance(s, t, settings, x, y, i, recorder.visitor(tally));
     return tally.near;
 }
 LightsInView in_view(const Scene& s) {
@@ -172,11 +172,12 @@ TEST_CASE("a film sums near misses by replications and weights, whatever the thr
     const NamedScene s = mirror_scene(real(0.3), true);
     const LightRecorder recorder(s, {}, 0, 8, s.line_of_light);
     REQUIRE(!recorder.noisy().empty());
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     // No light grows that much here: the sum holds 1 / (K w) for each sample.
     const SampleFunction L = [&](const PixelSample& p, Tally& tally) {
         tally.near[0].sum[growths - 1][0] += fixed_point(tally.share);
-        return radiance(s, {}, pattern, p.x, p.y, p.i * 3 + p.replication, recorder.visitor(tally));
+        return radiance(s, {}, settings, p.x, p.y, p.i * 3 + p.replication,
+                        recorder.visitor(tally));
     };
     Plan plan{s.size};
     plan.replications = 3, plan.samples = 8, plan.noisy = recorder.noisy();
@@ -203,7 +204,7 @@ TEST_CASE("a film sums near misses by replications and weights, whatever the thr
                 const PixelSample p = f.sample_of(i, n, k);
                 Tally tally;
                 tally.near = recorder.near_misses(1);
-                radiance(s, {}, pattern, p.x, p.y, n * 3 + k, recorder.visitor(tally));
+                radiance(s, {}, settings, p.x, p.y, n * 3 + k, recorder.visitor(tally));
                 squares += c(tally.near, 2) / sqr(3.0 * f.weight[i]);
             }
     CHECK(squares > 0);
@@ -251,7 +252,7 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
         for (size_t k = 0; k < brightnesses; ++k) g.from_eye[k].sum = double(k % 2 * k), g.L2 = 3;
     Tally tally;
     tally.share = 0.25, tally.near.resize(2);
-    const Pattern pattern{SamplerKind::independent, seed_here()};
+    const SamplerSettings settings{SamplerKind::independent, seed_here()};
     const Technique technique;
     std::array<double, 2> came{};
     std::array<std::array<double, brightnesses>, 2> came_in{}, squares{};
@@ -260,8 +261,8 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
     for (uint64_t i = 0; i < 64000; ++i) {
         bool is_seen = false;
         NearMissVisitor misses{s, groups, each, tally};
-        radiance(s, technique, pattern, int(i % 8), int(i / 8 % 8), i,
-                 [&](const Segment& path, const Step& e) {
+        radiance(s, technique, settings, int(i % 8), int(i / 8 % 8), i,
+                 [&](const PathState& path, const VertexEvents& e) {
                      misses(path, e);
                      if (path.k == 0) is_seen = e.met && !e.vertex.material->is_delta();
                      in_mirror += e.direct.light && !is_seen, blocked += e.direct.occluded;
@@ -306,7 +307,7 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
     groups[0].from_light.sum = 0, groups[1].from_light.sum = 1e-300;
     tally.near = std::vector<NearMisses>(2);
     for (uint64_t i = 0; i < 64; ++i)
-        radiance(s, technique, pattern, int(i % 8), int(i / 8), i,
+        radiance(s, technique, settings, int(i % 8), int(i / 8), i,
                  NearMissVisitor{s, groups, each, tally});
     CHECK(tally.near[0].from_light.came == 0);
     CHECK(tally.near[1].from_light.came > 0);

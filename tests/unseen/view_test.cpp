@@ -120,11 +120,11 @@ TEST_CASE("paths that aim and all others bring the same, where both may find it"
             for (Brought& of : g.from_eye) of.sum = 1;
         Tally tally;
         tally.near.resize(2);
-        const Pattern pattern{SamplerKind::sobol, seed_here()};
+        const SamplerSettings settings{SamplerKind::sobol, seed_here()};
         constexpr uint64_t n = 4000;
         for (uint64_t i = 0; i < n; ++i)
             for (int pixel = 0; pixel < 24; ++pixel)
-                radiance(s, {}, pattern, pixel % 6, pixel / 6, i,
+                radiance(s, {}, settings, pixel % 6, pixel / 6, i,
                          NearMissVisitor{s, groups, each, tally});
         const LightsInView many = lights_in_view(s, {0, 4}, {}, Aims(s).of_eye(s), 600000);
         for (size_t light = 0; light < 2; ++light) {

@@ -17,15 +17,15 @@ TEST_CASE("a weighted mean is the sum of w L for every set of a pixel, and const
     scene.size = {4, 3};
     for (Weighting kind : weightings)
         for (uint64_t n : {1, 2, 9, 64}) {
-            const Pattern pattern{SamplerKind::independent, 7};
+            const SamplerSettings settings{SamplerKind::independent, 7};
             WeightTroubles troubles;
             auto place = [&](const PixelSample& s) {
-                return Sampler(pattern, uint64_t(4 * s.y + s.x), s.i, s.replication).get2(film_x);
+                return Sampler(settings, uint64_t(4 * s.y + s.x), s.i, s.replication).get2(film_x);
             };
             const SampleFunction L = [&](const PixelSample& s, Tally& tally) {
                 return ++tally.rays, rgb{1, place(s).x, real(s.i % 3)};
             };
-            const SampleFunction mean = weighted_mean(scene, pattern, kind, n, L, troubles);
+            const SampleFunction mean = weighted_mean(scene, settings, kind, n, L, troubles);
             uint64_t expected_redraws = 0, expected_fallbacks = 0;
             // One strip of vor in 4000 leaves the cell of one sample unbounded, and is drawn anew.
             const bool redrawn = kind == Weighting::vor && n == 1;
@@ -41,7 +41,7 @@ TEST_CASE("a weighted mean is the sum of w L for every set of a pixel, and const
                 }
                 Weigher weigher;
                 const auto& w = weigher(kind, places,
-                                        hash(hash(hash(0, pattern.seed), uint64_t(4 * s.y + s.x)),
+                                        hash(hash(hash(0, settings.seed), uint64_t(4 * s.y + s.x)),
                                              UINT64_MAX - s.replication));
                 expected_redraws += weigher.redraws, expected_fallbacks += weigher.fallbacks;
                 double second = 0, third = 0;
@@ -63,13 +63,13 @@ TEST_CASE("the stated d^2 of weighted means is that from seed to seed, on any nu
     for (Weighting kind : weightings) {
         Spread spread;
         for (uint64_t r = 0; r < 600; ++r) {
-            const Pattern pattern{SamplerKind::independent, hash(seed_here(), r)};
+            const SamplerSettings settings{SamplerKind::independent, hash(seed_here(), r)};
             WeightTroubles troubles;
             const SampleFunction sample = [&](const PixelSample& s, Tally&) {
-                const Sampler numbers(pattern, uint64_t(6 * s.y + s.x), s.i, s.replication);
+                const Sampler numbers(settings, uint64_t(6 * s.y + s.x), s.i, s.replication);
                 return heteroscedastic(s.x, s.y, numbers.get2(film_x));
             };
-            const SampleFunction L = weighted_mean(scene, pattern, kind, 6, sample, troubles);
+            const SampleFunction L = weighted_mean(scene, settings, kind, 6, sample, troubles);
             Options o;
             o.replications = 2, o.spp = 12, o.quiet = true;
             auto rendered = [&](unsigned threads) {

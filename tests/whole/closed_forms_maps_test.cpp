@@ -39,7 +39,7 @@ std::vector<Endless> endless_scenes(const std::vector<Known>& rows) {
 KnownLight maps_of(const Scene& scene, double scale) {
     Mesh mesh = make_mesh(scene, double(diagonal(scene)) / 8);
     constexpr uint64_t n = 4096;
-    Particles p(scene, mesh, Particles::pattern(SamplerKind::halton, hash(seed_here(), 1)));
+    Particles p(scene, mesh, Particles::settings(SamplerKind::halton, hash(seed_here(), 1)));
     for (size_t batch = 0; batch < Particles::batches; ++batch) p.add(batch, Particles::of_each(n));
     IlluminationMap map = p.map();
     for (rgb& E : map) E = E * real(scale);
@@ -47,9 +47,9 @@ KnownLight maps_of(const Scene& scene, double scale) {
 }
 
 // One sample of the known radiance.
-double measure(const Endless& e, const Gather& g, const Pattern& pattern, const Pattern& rest,
-               uint64_t i) {
-    const Sampler first(pattern, 0, i);
+double measure(const Endless& e, const Gather& g, const SamplerSettings& settings,
+               const SamplerSettings& rest, uint64_t i) {
+    const Sampler first(settings, 0, i);
     const EndlessNumbers u(first, Sampler(rest, 0, i));
     const vec2 film = first.get2(film_x);
     const Ray ray = e.known->start ? e.known->start(film)
@@ -76,11 +76,12 @@ TEST_CASE("paths that end on maps meet every closed form of diffuse triangles") 
                            [&](int r) {
                                const uint64_t n = 16 * uint64_t(e.known->aimed);
                                const uint64_t seed = hash(seed_here(), uint64_t(r));
-                               const Pattern pattern = EndlessNumbers::pattern(kind, seed),
-                                             rest = EndlessNumbers::independent(seed);
+                               const SamplerSettings settings =
+                                                         EndlessNumbers::settings(kind, seed),
+                                                     rest = EndlessNumbers::independent(seed);
                                double sum = 0;
                                for (uint64_t i = 0; i < n; ++i)
-                                   sum += measure(e, g, pattern, rest, i);
+                                   sum += measure(e, g, settings, rest, i);
                                return sum / double(n);
                            }),
                        0.3);

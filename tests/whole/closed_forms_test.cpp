@@ -40,10 +40,10 @@ const char* why_empty(const Known& k, const Scene& scene, const Options& o, bool
 }
 
 // One sample of the known radiance.
-double measure(const Known& k, const Scene& scene, const Options& o, const Pattern& pattern,
-               uint64_t sample) {
-    if (!k.start) return double(mean_of(radiance(scene, o.technique, pattern, 0, 0, sample)));
-    const Sampler sampler(pattern, 0, sample);
+double measure(const Known& k, const Scene& scene, const Options& o,
+               const SamplerSettings& settings, uint64_t sample) {
+    if (!k.start) return double(mean_of(radiance(scene, o.technique, settings, 0, 0, sample)));
+    const Sampler sampler(settings, 0, sample);
     const vec2 u = sampler.get2(film_x);
     return double(mean_of(Li(scene, o.technique, k.start(u), sampler)));
 }
@@ -69,13 +69,13 @@ Cell check(const Known& k, const Scene& scene, const Options& o, uint64_t n) {
     const bool independent = o.sampler == SamplerKind::independent;
     const int replicates = independent ? 1 : 64;
     const uint64_t points = n / uint64_t(replicates);
-    Pattern pattern = make_pattern(o.sampler, o.seed, scene.depth);
+    SamplerSettings settings = sampler_settings(o.sampler, o.seed, scene.depth);
     Moments samples, means;
     oracle::Draws draws;
-    for (int i = 0; i < replicates; ++i, ++pattern.seed) {
+    for (int i = 0; i < replicates; ++i, ++settings.seed) {
         Moments of_one;
         for (uint64_t j = 0; j < points; ++j) {
-            const double x = measure(k, scene, o, pattern, j);
+            const double x = measure(k, scene, o, settings, j);
             of_one.add(x), draws.add(x);
         }
         samples.merge(of_one);

@@ -41,7 +41,7 @@ void write_film(const Folder& folder, const std::string& name, const std::vector
             const double mean = double(m[3 * i + c]), s = std::sqrt(double(variance[3 * i + c]));
             f.sum[2 * i][c] = mean - s, f.sum[2 * i + 1][c] = mean + s;
         }
-    f.taken.assign(f.taken.size(), 1);
+    f.samples_done.assign(f.samples_done.size(), 1);
     const std::string path = (folder.path / name).string();
     const Keeper keeper(path, {{}, {}, {{"size", std::to_string(width) + "x1"}, {"rows", "0-0"}}});
     REQUIRE(keeper.write(f, {}, true) == "");

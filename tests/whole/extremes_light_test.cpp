@@ -60,11 +60,11 @@ double sphere_light_pdf(real d) {
 double sphere_light_normal(real d) {
     return worst_of("normal of a sphere light", 20000, [&](Dice& random, Worst& worst) {
         const Light l = bright_sphere({}, real(0.01));
-        const vec3 p = d * l.reach * random.direction();
+        const vec3 p = d * l.radius * random.direction();
         const vec2 u = random.pair();
         const auto s = sample_light(l, p, u);
         if (!s) return worst.see(HUGE_VAL);
-        const big sin2_max = big(l.reach) * l.reach / dot(big3(p), big3(p));
+        const big sin2_max = big(l.radius) * l.radius / dot(big3(p), big3(p));
         const big x = u.x * sin2_max / (1 + std::sqrt(1 - sin2_max)), phi = 2 * big_pi * u.y;
         const big theta = std::atan2(std::sqrt(x * (2 - x)), 1 - x);
         const big sin_beta = std::sqrt(x * (2 - x) / sin2_max);
@@ -103,8 +103,8 @@ bool sane(const std::optional<LightSample>& s) {
 double insane_on_a_light() {
     return count_of("on a light", 20000, [](Dice& random, int i) {
         const Light l = bright_sphere(random.direction(), random.decades(-3, 3));
-        const real r = l.reach, at[] = {r, std::nextafter(r, real(0)), std::nextafter(r, infinity),
-                                        r * random(0, 1), 0};
+        const real r = l.radius, at[] = {r, std::nextafter(r, real(0)), std::nextafter(r, infinity),
+                                         r * random(0, 1), 0};
         const vec3 p = l.p + at[i % 5] * random.direction();
         const vec2 corners[] = {{0, 0}, {below_one, below_one}, random.pair()};
         int insane = !std::isfinite(pdf_light(l, p, {l.p, {0, 0, 1}, 0}));

@@ -37,12 +37,12 @@ std::string room(double k, vec3 move = {}, double brightness = 1, bool point_lig
 // The radiance of every sample of every pixel.
 std::vector<rgb> samples_of(const std::string& text, int spp) {
     const Scene scene = parse_scene(text, "extreme").scene;
-    const Pattern pattern{SamplerKind::independent, oracle::seed_of("room")};
+    const SamplerSettings settings{SamplerKind::independent, oracle::seed_of("room")};
     std::vector<rgb> samples;
     for (int y = 0; y < scene.size.height; ++y)
         for (int x = 0; x < scene.size.width; ++x)
             for (int i = 0; i < spp; ++i)
-                samples.push_back(radiance(scene, {Direction::bsdf, LightMode::mis, 0}, pattern, x,
+                samples.push_back(radiance(scene, {Direction::bsdf, LightMode::mis, 0}, settings, x,
                                            y, uint64_t(i)));
     return samples;
 }
@@ -94,7 +94,7 @@ double room_mean(double k, real move) {
 // there are groups of groups.  Counts scenes with a sample that is not finite.
 double faint_and_bright(bool balls) {
     const double faintest = double(std::numeric_limits<real>::denorm_min());
-    const double least = double(std::numeric_limits<real>::min()), smallest = 2.1 / longest_length;
+    const double least = double(std::numeric_limits<real>::min()), smallest = 2.1 / max_length;
     auto lamp = [=](double y, double d) {
         return balls ? oracle::say("sphere 0 %.17g 0  %.17g  ", y, d / 2)
                      : oracle::say("quad %.17g %.17g %.17g  %.17g 0 0  0 0 %.17g  ", -d / 2, y,
@@ -126,11 +126,11 @@ double white_furnace() {
                             "furnace")
                             .scene;
     const Technique chance{Direction::bsdf, LightMode::none, 0};
-    const Pattern pattern{SamplerKind::independent, oracle::seed_of("white furnace")};
+    const SamplerSettings settings{SamplerKind::independent, oracle::seed_of("white furnace")};
     const big truth = -std::expm1(10001 * std::log1p(-1e-7L)) / 1e-7L;
     Worst worst;
     for (uint64_t i = 0; i < 10; ++i)
-        worst.see(relative(radiance(scene, chance, pattern, 3, 2, i).x, truth));
+        worst.see(relative(radiance(scene, chance, settings, 3, 2, i).x, truth));
     return worst.value;
 }
 

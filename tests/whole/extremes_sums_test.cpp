@@ -45,11 +45,11 @@ double late_samples() {
     int wrong = 0;
     const uint64_t late = uint64_t(1) << 40;
     for (SamplerKind kind : samplers) {
-        const Pattern pattern = make_pattern(kind, oracle::seed_of("late samples"), 4);
-        for (uint32_t dim : {film_x, dimension(3, Draw::wi_x)}) {
+        const SamplerSettings settings = sampler_settings(kind, oracle::seed_of("late samples"), 4);
+        for (uint32_t dim : {film_x, dimension(3, Dimension::wi_x)}) {
             int cells[16] = {};
             for (uint64_t i = late; i < late + 16; ++i) {
-                const vec2 u = Sampler(pattern, 77, i).get2(dim);
+                const vec2 u = Sampler(settings, 77, i).get2(dim);
                 const bool inside = u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1;
                 wrong += !inside;
                 if (inside) ++cells[size_t(u.x * 4) * 4 + size_t(u.y * 4)];

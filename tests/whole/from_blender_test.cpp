@@ -148,7 +148,7 @@ void check_same(const Camera& a, const Camera& b) {
 
 void check_same(const Light& a, const Light& b) {
     CHECK(a.kind.index() == b.kind.index());
-    CHECK(double(a.reach) == doctest::Approx(double(b.reach)).epsilon(1e-6));
+    CHECK(double(a.radius) == doctest::Approx(double(b.radius)).epsilon(1e-6));
     CHECK(a.twosided == b.twosided);
     REQUIRE(corners_of(a).size() == corners_of(b).size());
     for (size_t k = 0; k < corners_of(a).size(); ++k)

@@ -29,19 +29,19 @@ struct Stopped {
 
 // Follows the loop of renders with --error.
 Stopped stop_of(SamplerKind kind, uint64_t seed, double asked) {
-    const Pattern pattern = make_pattern(kind, seed, 1);
+    const SamplerSettings settings = sampler_settings(kind, seed, 1);
     const SampleFunction sample = [&](const PixelSample& s, Tally&) {
         const uint64_t pixel = uint64_t(s.y) * uint64_t(size.width) + uint64_t(s.x);
-        return L(s.x, s.y, Sampler(pattern, pixel, s.i, s.replication).get2(0));
+        return L(s.x, s.y, Sampler(settings, pixel, s.i, s.replication).get2(0));
     };
     Film film = filled(size, 0, pilot_samples, sample);
     while (!is_small_enough(error_of(film), asked))
-        fill(film, next_check(film.min_taken()), sample);
+        fill(film, next_check(film.min_samples_done()), sample);
     Image expected(size.width, size.height);
     for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)
             for (size_t c = 0; c < 3; ++c) expected.at(x, y)[c] = float(truth(x, y).*axis[c]);
-    return {d_rel(expected, image_of(film)) / asked, film.min_taken()};
+    return {d_rel(expected, image_of(film)) / asked, film.min_samples_done()};
 }
 
 // Expects at most a part p of all runs to have a property that `count` of n runs had.

@@ -44,7 +44,7 @@ inline std::vector<Light> lights_of(Dice& dice, size_t n, real r) {
 
 template <class Choice>
 Choice choice_of(const std::vector<Light>& lights) {
-    return {lights, strengths_of(lights)};
+    return {lights, intensities_of(lights)};
 }
 
 TEST_CASE_TEMPLATE_DEFINE("one of many lights is chosen as often as is said", Choice, one_of_many) {
@@ -89,15 +89,15 @@ TEST_CASE_TEMPLATE_DEFINE("a light is never chosen only where it sends nothing",
         const Light& first = lights[0];
         const real probability = choice_of<Choice>(lights).probability_of(0, p, m);
         for (const vec3 corner : corners_of(first))
-            beyond += length(corner - first.centre) > first.reach * (1 + 8 * ulp);
+            beyond += length(corner - first.centre) > first.radius * (1 + 8 * ulp);
         real E = 0;
         for (int k = 0; k < 8; ++k) E += sends(first, p, m, dice.pair());
         // The bound is the rounding error of a cosine near 0.
-        const bool sends_some = E > 256 * ulp * strength(first, std::numbers::pi);
+        const bool sends_some = E > 256 * ulp * intensity(first, std::numbers::pi);
         sent += sends_some;
         lost += sends_some && !(probability > 0);
         // The whole light lies below the horizon, or it faces away.
-        const bool is_below = dot(m, first.centre - p) < -first.reach - 64 * ulp;
+        const bool is_below = dot(m, first.centre - p) < -first.radius - 64 * ulp;
         const bool is_behind =
             first.n != vec3{} && !first.twosided && dot(first.n, p - first.p) < -64 * ulp * r;
         below += is_below, behind += is_behind;

@@ -15,6 +15,6 @@ TEST_CASE("the sphere about a polygon holds its corners, and touches two of a qu
         const Light l = light_of(dice, 2 + i % 2, 1);
         real most = 0;
         for (vec3 corner : corners_of(l)) most = std::max(most, length(corner - l.centre));
-        CHECK(std::abs(most - l.reach) < 16 * ulp);
+        CHECK(std::abs(most - l.radius) < 16 * ulp);
     }
 }

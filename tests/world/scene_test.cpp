@@ -68,7 +68,7 @@ TEST_CASE("an emitting shape is a light: its geometry, its error, and which shap
     CHECK(s.material_of == std::vector<uint32_t>{lamp, grey, panel, panel, lamp});
     REQUIRE(s.lights.size() == 5);
     const Light &ball = s.lights[0], &quad = s.lights[1], &point = s.lights[3];
-    CHECK((ball.as<SphereLight>() && ball.reach == 4));
+    CHECK((ball.as<SphereLight>() && ball.radius == 4));
     CHECK((ball.L == rgb{1, 2, 3} && !ball.twosided));
     CHECK((quad.as<QuadLight>() && quad.twosided));
     CHECK((quad.n == vec3{0, 0, 1} && quad.pdf_area == real(1) / 6));  // faces +z like its shapes
