@@ -17,7 +17,7 @@ struct MissedLight {
 };
 struct LightRecorder {
     explicit LightRecorder(auto&&...) {}
-    std::vector<NearMisses> near_misses(double) const { return {}; }
+    std::vector<NearMisses> near_misses(uint32_t) const { return {}; }
     std::vector<size_t> noisy() const { return {}; }
     static std::string why_unknown(const Film&, const ImageError&) { return ""; }
     NoVisitor visitor(Tally&) const { return {}; }

@@ -1,6 +1,6 @@
 // keep/film_file.h  1  .film files: a head that says what is in them, numbers, and a checksum
 //
-//     penumbra film 9                    what it is, and the version of this format
+//     penumbra film 10                   what it is, and the version of this format
 //     bytes 00000000000000001536         of numbers, after the head
 //     checksum 0f1e2d3c4b5a6978          of all that follows this line
 //     scene 7dc0f03976e8ec38             KEY VALUE: what the writer says of them
@@ -39,7 +39,7 @@ struct Checksum {
 // The three lines that come first; they have one length.
 inline std::string first_lines(uint64_t bytes, const Checksum& checksum) {
     const std::string digits = std::to_string(bytes);
-    return "penumbra film 9\nbytes " + std::string(20 - digits.size(), '0') + digits +
+    return "penumbra film 10\nbytes " + std::string(20 - digits.size(), '0') + digits +
            "\nchecksum " + checksum.text() + "\n";
 }
 
@@ -123,14 +123,16 @@ private:
     // Returns where they end.
     size_t check_first_lines(const std::string& head) const {
         const std::string first = first_lines(0, {});
-        const size_t line = first.find('\n') + 1, magic = line - 2, end = head.find('\n');
+        const size_t line = first.find('\n') + 1, end = head.find('\n');
+        const size_t magic = first.rfind(' ', line) + 1;  // its version follows
         if (!head.empty() && head.size() < first.size() && first.starts_with(head.substr(0, line)))
             refuse(cut_short);
         if (head.compare(0, magic, first, 0, magic) != 0 || end > magic + 20)
             refuse("is not a film");
-        if (end != line - 1 || head[magic] != first[magic])
+        const std::string version = first.substr(magic, line - 1 - magic);
+        if (head.substr(magic, end - magic) != version)
             refuse("is of another Penumbra: format version " + head.substr(magic, end - magic) +
-                   ", not " + first[magic]);
+                   ", not " + version);
         return first.size();
     }
     Checksum checksum_from(uint64_t byte) {

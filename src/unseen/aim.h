@@ -85,8 +85,7 @@ public:
     }
     std::optional<vec3> toward(vec3 y, vec2 u) const {
         const auto at = sample_light(as_light_, y, u);
-        const bool is_met = at && intersect(shape_, {y, at->wi}, shear(at->wi), infinity);
-        return is_met ? std::optional(at->wi) : std::nullopt;  // not if edge-on
+        return at && pdf(y, at->wi) > 0 ? std::optional(at->wi) : std::nullopt;  // not if edge-on
     }
     real pdf(vec3 y, vec3 d) const {
         const vec3 to_centre = as_light_.centre - y, across = to_centre - d * dot(to_centre, d);
@@ -100,6 +99,14 @@ private:
     Shape shape_;
     Light as_light_;
 };
+
+// The same three times as large: glass displaces what it shows.
+inline Shape grown(Shape s) {
+    const vec3 centre = s.is_triangle() ? (s.a + s.b + s.c) / 3 : s.a;
+    for (vec3* p : {&s.a, &s.b, &s.c}) *p = centre + 3 * (*p - centre);
+    s.r *= 3;
+    return s;
+}
 
 // A mirror or pane of glass: a triangle, or both of a quad.  What it shows to an eye is what the
 // eye's image behind it sees.

@@ -28,6 +28,48 @@ struct Chosen {
     }
 };
 
+// How bright lights would make a shape, at its centre, if nothing were in between.
+class Shine {
+public:
+    explicit Shine(const Scene& s) : scene_(s) {
+        const std::vector<DistantLight> all = from_afar(s.lights, intensities_of(s.lights));
+        Chosen<std::pair<int32_t, DistantLight>> lights{64};
+        for (size_t i = 0; i < all.size(); ++i) lights.add({int32_t(i), all[i]});
+        lights_ = lights.items;
+    }
+    real albedo(size_t shape) const {
+        const Material& m = scene_.materials[scene_.material_of[shape]];
+        const vec3 n{0, 0, 1};
+        return m.is_delta() ? 1 : std::min(real(1), pi * max_of(eval(m, n, n)));
+    }
+    real on(size_t shape) const {
+        const Shape& s = scene_.shapes[shape];
+        const vec3 p = s.is_triangle() ? (s.a + s.b + s.c) / 3 : s.a;
+        real sum = 0;
+        for (const auto& [i, light] : lights_)
+            if (i != scene_.light_of[shape])  // its own
+                sum += light_weight(light, p, unit(light.centre - p)).value;
+        return sum < infinity ? sum * albedo(shape) : 0;
+    }
+    // At most so many of these shapes: the half that is brightest, and others by lot.
+    std::vector<size_t> choose(const std::vector<size_t>& shapes, size_t most) const {
+        if (shapes.size() <= most) return shapes;
+        std::vector<std::pair<real, size_t>> order;
+        for (const size_t i : shapes) order.emplace_back(-on(i), i);
+        std::ranges::sort(order);
+        std::vector<size_t> chosen;
+        Chosen<size_t> others{most - most / 2};
+        for (size_t k = 0; k < order.size(); ++k)
+            k < most / 2 ? chosen.push_back(order[k].second) : others.add(order[k].second);
+        chosen.insert(chosen.end(), others.items.begin(), others.items.end());
+        return chosen;
+    }
+
+private:
+    const Scene& scene_;
+    std::vector<std::pair<int32_t, DistantLight>> lights_;
+};
+
 // Aims of a scene, in views.  A view is a list of mirrors, in the order in which a ray meets them,
 // and aims at what they show; view 0 has no mirrors, and lights have it alone.
 class Aims {
@@ -35,10 +77,12 @@ class Aims {
 
 public:
     // 128 edges, but no diagonals of quads, 64 shapes and lamps, 128 mirrors; no more than half of
-    // the edges and shapes from one run of shapes of one material, for a mesh has thousands.
+    // the edges and shapes from one run of shapes of one material, for a mesh has thousands: of
+    // 2048 by lot.  Each shape has two aims, see grown.
     explicit Aims(const Scene& s) {
         Chosen<EdgeAim> edges{128}, of_run{64};
-        Chosen<size_t> shapes{64}, shapes_of_run{32}, lamps{64};
+        Chosen<size_t> shapes{2048}, shapes_of_run{2048}, lamps{64};
+        const Shine shine(s);
         Chosen<PlaneMirror> mirrors{128};
         auto normal = [&](size_t i) { return unit(area_vector(s.shapes[i])); };
         auto halves = [&](size_t i, size_t j) {  // of a quad
@@ -48,10 +92,15 @@ public:
         auto is_flat = [&](size_t i, size_t j) {  // but for rounding
             return halves(i, j) && length(normal(i) - normal(j)) < real(1e-4);
         };
+        auto end_run = [&] {
+            edges.take(of_run);
+            shapes_of_run.items = shine.choose(shapes_of_run.items, 32);
+            shapes.take(shapes_of_run);
+        };
         for (size_t i = 0; i < s.shapes.size(); ++i) {
-            if (i > 0 && s.material_of[i] != s.material_of[i - 1])
-                edges.take(of_run), shapes.take(shapes_of_run);
-            (s.light_of[i] != no_light ? lamps : shapes_of_run).add(i);
+            if (i > 0 && s.material_of[i] != s.material_of[i - 1]) end_run();
+            if (s.light_of[i] != no_light) lamps.add(i);
+            if (s.light_of[i] == no_light || shine.albedo(i) > 0) shapes_of_run.add(i);
             if (s.light_of[i] != no_light || !s.shapes[i].is_triangle()) continue;
             const auto& [a, b, c, r] = s.shapes[i];
             of_run.add({b, c, a});
@@ -60,26 +109,35 @@ public:
             if (s.materials[s.material_of[i]].is_delta() && (i == 0 || !is_flat(i - 1, i)))
                 mirrors.add({i, is_flat(i, i + 1) ? i + 1 : i, a, b, c, normal(i)});
         }
-        edges.take(of_run), shapes.take(shapes_of_run);
+        end_run();
         for (const EdgeAim& edge : edges.items)  // one of two triangles counts once
             if (std::ranges::find(edges_, edge) == edges_.end()) edges_.push_back(edge);
-        for (const size_t i : shapes.items) shapes_.push_back(ShapeAim(s.shapes[i]));
+        for (const size_t i : shine.choose(shapes.items, 64))
+            for (const Shape& shape : {s.shapes[i], grown(s.shapes[i])})
+                shapes_.push_back(ShapeAim(shape)), shine_.push_back(double(shine.on(i)));
+        const double all = std::accumulate(shine_.begin(), shine_.end(), 0.0);
+        for (double& x : shine_) x = all > 0 ? x / all : 1 / double(shine_.size());
         mirrors_ = mirrors.items;
         if (!mirrors_.empty())
             for (const size_t i : lamps.items) lamps_.push_back(ShapeAim(s.shapes[i]));
         share();
     }
-    // The eye's: also 256 corners, and views in mirrors, and in 128 pairs of them.
+    // The eye's: also 256 corners, and views in mirrors, in 128 pairs and in 64 triples of them.
     Aims of_eye(const Scene& s) const {
         Aims all = *this;
         all.corners_ = corners(s);
-        Chosen<View> pairs{128};
+        Chosen<View> pairs{128}, triples{64};
         for (size_t i = 0; i < mirrors_.size(); ++i) {
             all.views_.push_back({i});
             for (size_t j = 0; j < mirrors_.size(); ++j)
                 if (mirrors_[i].shows(mirrors_[j], s.camera.eye)) pairs.add({i, j});
         }
-        all.views_.insert(all.views_.end(), pairs.items.begin(), pairs.items.end());
+        for (const View& pair : pairs.items)
+            for (size_t j = 0; j < mirrors_.size(); ++j)
+                if (mirrors_[pair[1]].shows(mirrors_[j], mirrors_[pair[0]].image(s.camera.eye)))
+                    triples.add({pair[0], pair[1], j});
+        for (const auto* longer : {&pairs, &triples})
+            all.views_.insert(all.views_.end(), longer->items.begin(), longer->items.end());
         all.share();
         return all;
     }
@@ -137,6 +195,7 @@ public:
 private:
     std::vector<EdgeAim> edges_;
     std::vector<ShapeAim> shapes_, lamps_;  // lamps in mirrors; others have samples of their own
+    std::vector<double> shine_;             // of the shapes; the sum is 1
     std::vector<CornerAim> corners_;
     std::vector<PlaneMirror> mirrors_;
     std::vector<View> views_{{}};
@@ -158,19 +217,22 @@ private:
         return corners_[i - lamps_.size()].toward(y, u);
     }
     // Of all directions from a light 3/4 aim at edges, the others at shapes; of those from the eye
-    // in view 0 1/2 at edges, 1/4 at corners; of those in mirrors 1/2 at edges, 1/3 at lamps.  Per
-    // 4 in view 0 there are 3 in single mirrors, and 3 in pairs.
+    // in view 0 1/2 at edges, 1/4 at corners; of those in mirrors 1/2 at edges, 1/3 at lamps.  Half
+    // of those at shapes go where lights shine.  Per 4 in view 0 there are 3 in single mirrors, and
+    // 3 in longer lists.
     void share() {
         const double singles = double(mirrors_.size());
-        const double pairs = double(views_.size()) - 1 - singles;
+        const double longer = double(views_.size()) - 1 - singles;
         part_.clear();
         for (const View& view : views_) {
             const bool has_corners = view.empty() && !corners_.empty();
-            const double alike = view.empty() ? 0.5 : view.size() == 1 ? singles : pairs;
+            const double alike = view.empty() ? 0.5 : view.size() == 1 ? singles : longer;
             auto add = [&](size_t n, double part) {
                 part_.insert(part_.end(), n, part / alike / double(n));
             };
-            add(edges_.size(), has_corners ? 2 : 3), add(shapes_.size(), 1);
+            add(edges_.size(), has_corners ? 2 : 3), add(shapes_.size(), 0.5);
+            for (size_t i = 0; i < shine_.size(); ++i)
+                part_[part_.size() - shine_.size() + i] += shine_[i] / 2 / alike;
             add(lamps_.size(), view.empty() ? 0 : 2), add(corners_.size(), has_corners ? 1 : 0);
         }
         const double all = std::accumulate(part_.begin(), part_.end(), 0.0);

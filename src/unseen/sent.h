@@ -134,17 +134,19 @@ inline Emission emission(const Light& l, const Aims& aims, Draws& u) {
             aim ? std::optional(aim->at) : std::nullopt, double(pdf)};
 }
 
-// A path from a light, from its emission.  Calls splat(pixel, radiance) where the eye sees it: the
-// mean radiance of the pixel, by this path.  Unbiased for what paths of up to max_bounces from the
-// eye find behind a first surface that is no mirror or glass.
+// A path from a light, from its emission.  Calls splat(pixel, radiance, first shape) where the eye
+// sees it: the mean radiance of the pixel, by this path.  Unbiased for what paths of up to
+// max_bounces from the eye find behind a first surface that is no mirror or glass.
 template <class Splat>
 void follow_light(const Scene& s, const Band& band, const Light& l, const Emission& emitted,
                   Draws& u, Splat splat) {
     Ray ray = emitted.ray;
     rgb flux = emitted.flux;
+    uint32_t first = 0;
     for (int k = 0; k < std::min(s.depth, max_bounces) && max_of(flux) > 0; ++k) {
         const auto hit = s.bvh.closest(ray);
         if (!hit) return;
+        if (k == 0) first = hit->id;
         const Surface x = s.surface(ray, *hit);
         const Material& m = s.material(*hit);
         const real cosine = -dot(x.n, ray.d);
@@ -156,7 +158,7 @@ void follow_light(const Scene& s, const Band& band, const Light& l, const Emissi
             const rgb L = flux * eval(m, wo, local.to_local(d)) *
                           (dot(n, d) / dot(to_eye, to_eye) / real(to->solid_angle));
             const Ray back = spawn_to({x.p, n, x.error}, {s.camera.eye, {}, 0});
-            if (max_of(L) > 0 && !s.bvh.occluded(back)) splat(to->pixel, L);
+            if (max_of(L) > 0 && !s.bvh.occluded(back)) splat(to->pixel, L, first);
         }
         const real u_lobe = u.one();
         const BsdfSample b = sample(m, wo, cosine > 0, u_lobe, u.two(), Direction::bsdf);
@@ -175,10 +177,16 @@ inline uint64_t aimed_paths(const Scene& s, const Band& band) {
     return std::min<uint64_t>(8 * uint64_t(s.size.width) * uint64_t(band.count), 1 << 14);
 }
 
+// The class of a shape's area.
+inline size_t class_of(const Shape& shape) {
+    return class_of(shape.is_triangle() ? double(length(area_vector(shape))) / 2
+                                        : 4 * std::numbers::pi * sqr(double(shape.r)));
+}
+
 // What each group of lights sends to the picture, by so many paths, half of which the lights share
 // alike and half by their intensities.  Half of the paths learn where to aim, the others count.
 inline PictureSums sent_by_lights(const Scene& s, const Band& band, Aims aims, uint64_t paths) {
-    PictureSums sums(std::min(s.lights.size(), max_light_groups));
+    PictureSums sums(std::min(s.lights.size(), max_light_groups) * classes);
     const std::vector<size_t> group_of = light_groups(s);
     double most = std::numeric_limits<double>::min(), all = 0;
     for (const Light& l : s.lights) most = std::max(most, intensity(l));
@@ -200,10 +208,10 @@ inline PictureSums sent_by_lights(const Scene& s, const Band& band, Aims aims, u
         Draws u{hash(paths, k)};
         const Emission emitted = emission(s.lights[i], aims, u);
         double sum = 0;
-        follow_light(s, band, s.lights[i], emitted, u, [&](size_t pixel, rgb L) {
+        follow_light(s, band, s.lights[i], emitted, u, [&](size_t pixel, rgb L, uint32_t shape) {
             const double c = double(mean_of(L)) / p;
             sum += c;
-            if (!learns) sums.add(group_of[i], pixel, c);
+            if (!learns) sums.add(group_of[i] * classes + class_of(s.shapes[shape]), pixel, c);
         });
         sums.end_path();
         if (emitted.aim) worth[*emitted.aim] += square(sum * emitted.pdf);

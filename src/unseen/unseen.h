@@ -43,24 +43,29 @@ struct NearMissVisitor {
     const std::vector<size_t>& group_of;  // of each light
     Tally& tally;
     bool is_seen = false;  // the first surface is no mirror or glass
+    uint32_t before = 0;   // shape of the last vertex
 
     void operator()(const PathState& path, const VertexEvents& here) {
         if (path.k == 0) is_seen = here.met && !here.vertex.material->is_delta();
         if (path.k > 0 && std::isinf(path.pdf) && !groups.empty()) add_near_misses(path, here);
-        visit_lights(scene, path, here, [&](size_t light, rgb L) { add_came(light, L); });
+        const uint32_t shape = here.met ? here.vertex.hit.id : 0;
+        visit_lights(scene, path, here, [&](size_t light, rgb L, bool is_met) {
+            add_came(light, L, scene.shapes[is_met ? before : shape]);
+        });
+        before = shape;
     }
 
 private:
     // A path may bring up to 2^20 times what lights bring to all of the picture.
-    void add_came(size_t light, rgb L) {
+    void add_came(size_t light, rgb L, const Shape& lit) {
         const double mean = double(mean_of(L));
         if (groups.empty() || !(mean > 0)) return;
-        const size_t g = group_of[light], k = place_of(mean);
+        const size_t g = group_of[light], k = class_of(mean), size = class_of(lit);
         auto add = [&](const Brought& of, Brought& to) {
             const double part = of.sum > 0 ? mean * tally.share / of.sum : 0;
             to.came += uint64_t(0x1p40 * std::min(0x1p20, part)), ++to.hits;
         };
-        if (is_seen) add(groups[g].from_light, tally.near[g].from_light);
+        if (is_seen) add(groups[g].from_light[size], tally.near[g].from_light[size]);
         add(groups[g].from_eye[k], tally.near[g].from_eye[k]);
         const double c = mean_square(L) / groups[g].L2 * square(tally.share);
         if (c > 0) tally.near[g].squares[k] += fixed_point(0x1p20 * c);
@@ -105,8 +110,8 @@ public:
             const NearMisses& group = groups[g];
             const double v = weight * weight * group.L2, n = t * group.K;
             lights_[g].line = group.line;
-            lights_[g].from_light.add(group.from_light, t, weight);
-            for (size_t k = 0; k < brightnesses; ++k) {
+            for (size_t k = 0; k < classes; ++k) {
+                lights_[g].from_light[k].add(group.from_light[k], t, weight);
                 lights_[g].from_eye[k].add(group.from_eye[k], t, weight);
                 lights_[g].from_eye[k].by_chance +=
                     v * std::ldexp(value_of(group.squares[k]), -20) / (t * t);
@@ -138,8 +143,8 @@ public:
             auto hit = [&](const char* where, double met) {
                 return name + where + " was hit " + counted(fixed(met, 0), "time");
             };
-            consider(l.from_light.missing(),
-                     "paths from the eye bring less than paths from " + name);
+            for (const Missing& of : l.from_light)
+                consider(of.missing(), "paths from the eye bring less than paths from " + name);
             for (const Missing& of : l.from_eye) {
                 consider(of.missing(), "paths from the eye that aim bring more of " + name);
                 const double variance = of.hits < l.few() ? of.by_chance : 0;
@@ -190,8 +195,7 @@ private:
     struct OneLight {
         double line = 0, variance = 0, met = 0;  // met: expected camera rays
         double samples = 0, weight = 0;          // of a pixel near a light; of the films
-        Missing from_light;
-        std::array<Missing, brightnesses> from_eye;
+        std::array<Missing, classes> from_light, from_eye;
         std::array<NearSum, growths> near;
 
         // Fewer hits than a sixteenth of a pixel's samples are random in number, even if it has
@@ -214,12 +218,14 @@ public:
         view_ = lights_in_view(scene, band, t, aims.of_eye(scene), paths, line_of_light);
         const PictureSums sent = sent_by_lights(scene, band, aims, paths);
         for (size_t g = 0; g < view_.groups.size(); ++g)
-            view_.groups[g].from_light = sent.of(g, double(rows) * scene.size.width);
+            for (size_t k = 0; k < classes; ++k)
+                view_.groups[g].from_light[k] =
+                    sent.of(g * classes + k, double(rows) * scene.size.width);
     }
 
     // Lights, and pixels near them, of a film whose noisy pixels have K samples or more for each
     // sample of a replication of weight 1.
-    std::vector<NearMisses> near_misses(double K) const {
+    std::vector<NearMisses> near_misses(uint32_t K) const {
         std::vector<NearMisses> near = view_.groups;
         for (NearMisses& g : near) g.K = K;
         return near;

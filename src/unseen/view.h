@@ -10,18 +10,14 @@ inline double mean_square(rgb L) {
     return (sqr(double(L.x)) + sqr(double(L.y)) + sqr(double(L.z))) / 3;
 }
 
-// Calls visit(light, L) with what lights bring at a vertex, but where the eye sees them.
+// Calls visit(light, L, is_met) with what lights bring at a vertex, but where the eye sees them: a
+// light that the ray met lights the vertex before.
 template <class Visit>
 void visit_lights(const Scene& s, const PathState& path, const VertexEvents& here, Visit visit) {
     if (path.k > 0 && max_of(here.Le) > 0)
-        visit(size_t(s.light_of[here.vertex.hit.id]), path.beta * here.Le * here.weight);
+        visit(size_t(s.light_of[here.vertex.hit.id]), path.beta * here.Le * here.weight, true);
     if (here.direct.light)
-        visit(size_t(here.direct.light - s.lights.data()), path.beta * here.direct.L);
-}
-
-// The place in NearMisses::from_eye of a positive radiance: three octaves each, in turns.
-inline size_t place_of(double L) {
-    return size_t(std::ilogb(std::min(L, 1e300)) + 3 * 1024) / 3 % brightnesses;
+        visit(size_t(here.direct.light - s.lights.data()), path.beta * here.direct.L, false);
 }
 
 // ---- Paths from the eye -------------------------------------------------------------------------
@@ -68,7 +64,7 @@ inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const T
             found.pdf_of_points =
                 double(pdf_light(s.lights[*found.seen], eye, here.vertex.at)) * to->solid_angle;
         }
-        visit_lights(s, path, here, [&](size_t light, rgb L) {
+        visit_lights(s, path, here, [&](size_t light, rgb L, bool) {
             if (mean_of(L) > 0) found.brought.emplace_back(light, mean_of(L));
         });
         if (here.end != End::no) break;
@@ -132,12 +128,12 @@ inline LightsInView lights_in_view(const Scene& s, const Band& band, const Techn
         parts[group_of[light]][pixel] += 1 / (pdf_of_points * double(points) + pdf * double(aimed));
     };
     visit_points(s, band, aims, points, add);
-    PictureSums sums(groups * brightnesses);
+    PictureSums sums(groups * classes);
     for (uint64_t k = aimed; k < 2 * aimed; ++k)
         if (const auto path = eye_path(s, band, technique, aims, k)) {
             if (path->seen) add(*path->seen, path->pixel, path->pdf_of_points, path->pdf);
             for (const auto& [light, L] : path->brought)
-                sums.add(group_of[light] * brightnesses + place_of(L), path->pixel,
+                sums.add(group_of[light] * classes + class_of(L), path->pixel,
                          L / (path->pdf * double(aimed)));
             sums.end_path();
         }
@@ -150,8 +146,8 @@ inline LightsInView lights_in_view(const Scene& s, const Band& band, const Techn
     }
     for (size_t g = 0; g < groups; ++g) {
         NearMisses& group = view.groups[g];
-        for (size_t k = 0; k < brightnesses; ++k)
-            group.from_eye[k] = sums.of(g * brightnesses + k, band.count * s.size.width);
+        for (size_t k = 0; k < classes; ++k)
+            group.from_eye[k] = sums.of(g * classes + k, band.count * s.size.width);
         for (const auto& [i, a] : parts[g]) group.area += a, group.a += std::max(0.0, a * (1 - a));
         if (group.area < 16)
             for (const auto& [i, a] : parts[g]) view.noisy.push_back(i);

@@ -74,11 +74,11 @@ TEST_CASE("a film is read as it was written: its lines in their order, its numbe
     CHECK(folder.files() == 1);
 }
 
-TEST_CASE("`head` shows a film's first lines; films of version 9 stay what they are") {
+TEST_CASE("`head` shows a film's first lines; films of version 10 stay what they are") {
     const Sample film("abc");
     // A program in another language computed the checksum.
     CHECK(film.bytes ==
-          "penumbra film 9\nbytes 00000000000000000003\nchecksum 50feca0aaa5a1aa0\n"
+          "penumbra film 10\nbytes 00000000000000000003\nchecksum 50feca0aaa5a1aa0\n"
           "scene scenes/a b.scene\noptions \nsize 3x2\n\nabc");
 }
 
@@ -155,14 +155,14 @@ TEST_CASE("a film with any bit flipped is refused, and says why") {
 TEST_CASE("what is no film, or of another version, is refused by name") {
     const Sample film;
     const Folder& folder = film.folder;
-    const std::string rest = film.bytes.substr(16);
+    const std::string rest = film.bytes.substr(17);
     for (const std::string& bytes :
          {std::string("PF\n1 1\n-1.0\n"), std::string(100000, 'x'), std::string(100000, '\n'),
-          "penumbra film 9" + std::string(100000, '1'), "penumbra film\n" + rest})
+          "penumbra film 10" + std::string(100000, '1'), "penumbra film\n" + rest})
         CHECK(film.refused(bytes) == "is not a film");
-    for (const std::string version : {"1", "2", "3", "4", "5", "6", "7", "8", "77"})
+    for (const std::string version : {"1", "2", "3", "4", "5", "6", "7", "8", "9", "77"})
         CHECK(film.refused("penumbra film " + version + "\n" + rest) ==
-              "is of another Penumbra: format version " + version + ", not 9");
+              "is of another Penumbra: format version " + version + ", not 10");
     CHECK(film.refused(first_lines(100000, {}) + std::string(100000, 'x')) == "is cut short");
     CHECK(refusal(folder, "missing.film").starts_with("cannot open: "));
     REQUIRE(::mkfifo((folder / "pipe.film").c_str(), 0600) == 0);

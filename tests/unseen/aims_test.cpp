@@ -71,7 +71,7 @@ TEST_CASE("of many edges and shapes each is as likely as any other, until paths 
     for (int k = 0; k < 300; ++k)
         add_triangle(row, {real(k), 0, 0}, {real(k) + real(0.1), 0, 0}, {real(k), real(0.1), 0}, 0);
     Aims aims(row);
-    CHECK(aims.size() == 64 + 32);
+    CHECK(aims.size() == 64 + 2 * 32);
     const vec3 y{150, 0, 1000};
     auto third = [&](int which) {
         return part_of_aims(aims, y, 3000, [&](const Aims::Aim& aim) {
@@ -91,8 +91,66 @@ TEST_CASE("of many edges and shapes each is as likely as any other, until paths 
     worth[7] = 3, worth[80] = 1;
     aims.prefer(worth);
     CHECK(std::abs(part_of_aims(aims, y, 10000, at(7)) - (0.375 + 0.375 / 64)) < 0.03);
-    CHECK(std::abs(part_of_aims(aims, y, 10000, at(80)) - (0.125 + 0.125 / 32)) < 0.03);
+    CHECK(std::abs(part_of_aims(aims, y, 10000, at(80)) - (0.125 + 0.125 / 64)) < 0.03);
     CHECK(std::abs(part_of_aims(aims, y, 10000, is_shape) - 0.25) < 0.03);
+}
+
+TEST_CASE("of many shapes the half is aimed at on which lights shine most, and others by lot") {
+    Scene s;
+    s.materials = {{Rough({0.5, 0.5, 0.5})}, {}};
+    s.materials[1].Le = {1, 1, 1};
+    for (int k = 0; k < 300; ++k) add_sphere(s, {real(k), 0, 0}, real(0.1), 0);
+    // A lamp beside ball 210, and others far away.
+    add_sphere(s, {real(210.1), 2, 0}, real(0.5), 1);
+    for (int k = 0; k < 9; ++k) add_sphere(s, {real(k), 900, 0}, real(0.5), 1);
+    prepare(s);
+    const Aims aims(s);
+    CHECK(aims.size() == 2 * 32);
+    const vec3 y{150, 0, 1000};
+    int lit = 0, in_dark = 0;
+    for (int k = 0; k < 300; ++k)
+        if (aims.pdf(y, unit(vec3{real(k), 0, 0} - y)) > 0)
+            ++(std::abs(double(k) - 210.1) < 8 ? lit : in_dark);
+    CHECK(lit >= 16);
+    CHECK(lit < 20);
+    CHECK(lit + in_dark == 32);
+}
+
+TEST_CASE("half of the aims at shapes go where lights shine, in proportion to the albedo") {
+    Scene s;
+    const rgb half{0.5, 0.5, 0.5};
+    s.materials = {{Rough({0.8, 0.8, 0.8})},
+                   {Rough({0.02, 0.02, 0.02})},
+                   {Mirror({1, 1, 1})},
+                   {Rough({}, half, 1000)},
+                   {Rough(half)}};
+    const std::array albedo = {0.8, 0.02, 1.0, 1.0, 0.0};
+    const std::array<vec3, 5> at = {{{5, 0, 0}, {-5, 0, 0}, {0, 5, 0}, {0, -5, 0}, {}}};
+    for (uint32_t k = 0; k < 5; ++k) add_sphere(s, at[k], 1, k);
+    add_light(s, {{}, PointLight(), {1, 1, 1}});  // in the middle of the last
+    auto is_right = [&](size_t n) {
+        prepare(s);
+        const Aims aims(s);
+        REQUIRE(aims.size() == 2 * n);
+        double all = 0;
+        for (size_t k = 0; k < n; ++k) all += albedo[k];
+        for (size_t k = 0; k < n; ++k) {
+            const double part = part_of_aims(aims, {0, 0, 99}, 20000,
+                                             [&](const Aims::Aim& a) { return a.at / 2 == k; });
+            CHECK(std::abs(part - 0.5 / double(n) - 0.5 * albedo[k] / all) < 0.02);
+        }
+    };
+    is_right(5);
+    // A lamp counts if it reflects, but not by its own light.
+    s.materials[1].Le = s.materials[3].Le = {1e-6, 1e-6, 1e-6};
+    s.materials.push_back({}), s.materials[5].Le = {1, 1, 1};
+    Scene lit = s;
+    lit.shapes.clear(), lit.material_of.clear(), lit.light_of.clear(), lit.lights.clear();
+    add_light(lit, {{}, PointLight(), {1, 1, 1}});
+    for (uint32_t k = 0; k < 5; ++k) add_sphere(lit, at[k], 1, k);
+    add_sphere(lit, {0, 0, 999}, 1, 5);  // black
+    s = lit;
+    is_right(5);
 }
 
 TEST_CASE("a small thing is not lost in a mesh of another material") {
@@ -105,11 +163,11 @@ TEST_CASE("a small thing is not lost in a mesh of another material") {
                          0);
         if (is_last) add_sphere(s, {0, 0, 9}, real(0.01), 1);
         const Aims aims(s);
-        CHECK(aims.size() == 64 + 33);
+        CHECK(aims.size() == 64 + 2 * 33);
         const double part = part_of_aims(aims, {0, 0, 19}, 20000, [&](const Aims::Aim& aim) {
             return aim.at >= 64 && double(-aim.d.z) > 0.9999995;  // 0.01 at 10
         });
-        CHECK(std::abs(part - 0.25 / 33) < 0.003);
+        CHECK(std::abs(part - 0.25 / 66 * (1 + 1 / 9.0)) < 0.002);
     }
     // Many runs, each of its own, and 128 edges of them all.
     Scene s;
@@ -117,7 +175,7 @@ TEST_CASE("a small thing is not lost in a mesh of another material") {
     for (int k = 0; k < 300; ++k)
         add_triangle(s, {real(k), 0, 0}, {real(k) + real(0.1), 0, 0}, {real(k), real(0.1), 0},
                      uint32_t(k % 2));
-    CHECK(Aims(s).size() == 128 + 64);
+    CHECK(Aims(s).size() == 128 + 2 * 64);
 }
 
 TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps have none") {
@@ -128,10 +186,10 @@ TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps
     add_sphere(s, {}, 1, 1), add_quad(s, {}, {1, 0, 0}, {0, 1, 0}, 1);
     CHECK(Aims(s).size() == 0);
     add_sphere(s, {}, 1, 0);
-    CHECK(Aims(s).size() == 1);
+    CHECK(Aims(s).size() == 2);
     add_quad(s, {2, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
     const Aims aims(s);
-    CHECK(aims.size() == 4 + 3);
+    CHECK(aims.size() == 4 + 2 * 3);
     const vec3 y{real(2.5), real(0.5), 3};
     auto in_plane = [&](vec3 d) { return y - d * (3 / d.z) - vec3{2, 0, 0}; };
     auto is_in_quad = [&](vec3 d) {
@@ -142,8 +200,24 @@ TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps
     // Seen from before it, no direction beside an edge leads into the quad.
     CHECK(part_of_aims(aims, y, 4000,
                        [&](const Aims::Aim& a) { return a.at < 4 && is_in_quad(a.d); }) == 0);
-    CHECK(part_of_aims(aims, y, 4000,
-                       [&](const Aims::Aim& a) { return a.at >= 5 && !is_in_quad(a.d); }) < 0.001);
+    // Of every two aims at its triangles the second is three times as large: 4.5 for 0.5, of which
+    // the quad has 1 - 1/18.
+    auto at_triangle = [](const Aims::Aim& a, size_t size) {
+        return a.at >= 6 && a.at % 2 == size;
+    };
+    CHECK(part_of_aims(aims, y, 4000, [&](const Aims::Aim& a) {
+              return at_triangle(a, 0) && !is_in_quad(a.d);
+          }) < 0.001);
+    const double larger =
+        part_of_aims(aims, y, 40000, [&](const Aims::Aim& a) { return at_triangle(a, 1); });
+    const double around = part_of_aims(
+        aims, y, 40000, [&](const Aims::Aim& a) { return at_triangle(a, 1) && !is_in_quad(a.d); });
+    CHECK(std::abs(around / larger - (1 - (1 - 1 / 18.0) / 4.5)) < 0.05);
+    CHECK(part_of_aims(aims, y, 4000, [&](const Aims::Aim& a) {
+              const vec3 p = in_plane(a.d);
+              const real off = std::max(std::abs(p.x - real(0.5)), std::abs(p.y - real(0.5)));
+              return at_triangle(a, 1) && off > real(11.001) / 6;
+          }) == 0);
     // Distances from edges: all octaves alike, from 2^-16 to 8.
     auto nearer_than = [&](double most) {
         return part_of_aims(aims, y, 20000,
@@ -160,25 +234,27 @@ TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps
     CHECK(nearer_than(0x1p-17) == 0);
     // An edge of two triangles counts once, whichever way it leads.
     add_quad(s, {3, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-    CHECK(Aims(s).size() == 7 + 5);
+    CHECK(Aims(s).size() == 7 + 2 * 5);
 }
 
-TEST_CASE("an eye has views in mirrors and panes, and in pairs of which one can show the other") {
+TEST_CASE("an eye has views in mirrors and panes, and in lists of which each can show the next") {
     Scene s;
     s.materials = {{}, {}, {Mirror({1, 1, 1})}};
     s.materials[1].Le = {1, 1, 1};
     s.camera = look_at({0, 0, 1}, {0, 0, 0}, 40);
     add_sphere(s, {5, 0, 0}, 1, 1);
-    for (int i = 0; i < 10; ++i) add_quad(s, {0, 0, real(-i)}, {1, 0, 0}, {0, 1, 0}, 2);
+    for (int i = 0; i < 4; ++i) add_quad(s, {0, 0, real(-i)}, {1, 0, 0}, {0, 1, 0}, 2);
     auto views = [&] {
         prepare(s);
         const Aims aims = Aims(s).of_eye(s);
         return aims.view_of(aims.size() - 1) + 1;
     };
-    CHECK(views() == 1 + 10 + 45);  // each shows those before it
+    // Each shows those before it, and there one those behind it.
+    const size_t all = 1 + 4 + 6 + (9 + 4 + 1);
+    CHECK(views() == all);
     s.materials[2] = {Glass(real(1.5))};
-    CHECK(views() == 1 + 10 + 45);
-    // Whichever half of a quad reflects; not from a shape that is none, or in more than two.
+    CHECK(views() == all);
+    // Whichever half of a quad reflects; not from a shape that is none, or in more than three.
     const Aims aims = Aims(s).of_eye(s);
     for (const size_t shape : {size_t(3), size_t(4)}) {
         const auto view = aims.in_mirror(0, shape);
@@ -188,8 +264,11 @@ TEST_CASE("an eye has views in mirrors and panes, and in pairs of which one can 
         CHECK(!aims.in_mirror(*view, 5));
         const auto both = aims.in_mirror(*view, 1);
         REQUIRE(both);
-        CHECK(*both > 10);
-        CHECK(!aims.in_mirror(*both, 3));
+        CHECK(*both > 4);
+        const auto three = aims.in_mirror(*both, 3);
+        REQUIRE(three);
+        CHECK(*three > 10);
+        CHECK(!aims.in_mirror(*three, 1));
     }
     CHECK(!aims.in_mirror(0, 0));
     s.materials[2] = {};
@@ -216,7 +295,7 @@ TEST_CASE("directions of each view come with their density, and a mirror shows w
     prepare(s);
     Aims aims = Aims(s).of_eye(s);
     const size_t all = aims.size(), views = aims.view_of(all - 1) + 1;
-    REQUIRE(views == 5);
+    REQUIRE(views == 7);
     std::vector<double> worth(all);
     for (size_t i = 0; i < all; ++i) worth[i] = double(i % 3);
     const vec3 y = s.camera.eye;
@@ -240,7 +319,7 @@ TEST_CASE("directions of each view come with their density, and a mirror shows w
                 return p / (p + q);
             };
             INFO(view);
-            EXPECT(oracle::expect_equal(first, second, 200000), 0.1);
+            EXPECT(oracle::expect_equal(first, second, 280000), 0.1);
         }
     }
     // The lamp, from the eye's images: nearly a third of the directions of a view meet it.

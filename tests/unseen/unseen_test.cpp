@@ -247,37 +247,40 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
     prepare(s);
     const std::vector<size_t> each = {0, 1};
     std::vector<NearMisses> groups(2);
-    groups[0].from_light.sum = 2, groups[1].from_light.sum = 0.25;
     for (NearMisses& g : groups)
-        for (size_t k = 0; k < brightnesses; ++k) g.from_eye[k].sum = double(k % 2 * k), g.L2 = 3;
+        for (size_t k = 0; k < classes; ++k) g.from_eye[k].sum = double(k % 2 * k), g.L2 = 3;
+    for (size_t k = 0; k < classes; ++k)
+        groups[0].from_light[k].sum = 2, groups[1].from_light[k].sum = 0.25;
     Tally tally;
     tally.share = 0.25, tally.near.resize(2);
     const SamplerSettings settings{SamplerKind::independent, seed_here()};
     const Technique technique;
-    std::array<double, 2> came{};
-    std::array<std::array<double, brightnesses>, 2> came_in{}, squares{};
-    std::array<std::array<uint64_t, brightnesses>, 2> hits{};
+    std::array<std::array<double, classes>, 2> came{}, came_in{}, squares{};
+    std::array<std::array<uint64_t, classes>, 2> hits{};
     int in_mirror = 0, met = 0, blocked = 0;
     for (uint64_t i = 0; i < 64000; ++i) {
         bool is_seen = false;
+        size_t before = 0;  // class of the shape that the path left
         NearMissVisitor misses{s, groups, each, tally};
         radiance(s, technique, settings, int(i % 8), int(i / 8 % 8), i,
                  [&](const PathState& path, const VertexEvents& e) {
                      misses(path, e);
                      if (path.k == 0) is_seen = e.met && !e.vertex.material->is_delta();
                      in_mirror += e.direct.light && !is_seen, blocked += e.direct.occluded;
-                     auto add = [&](size_t light, rgb L) {
+                     auto add = [&](size_t light, rgb L, size_t size) {
                          if (!(max_of(L) > 0)) return;
-                         came[light] += is_seen ? double(mean_of(L)) / 4 : 0;
-                         const size_t k = place_of(double(mean_of(L)));
+                         came[light][size] += is_seen ? double(mean_of(L)) / 4 : 0;
+                         const size_t k = class_of(double(mean_of(L)));
                          came_in[light][k] += double(mean_of(L)) / 4, ++hits[light][k];
                          squares[light][k] += mean_square(L) / 3 / 16;
                      };
                      if (path.k > 0 && max_of(e.Le) > 0)
-                         ++met,
-                             add(size_t(s.light_of[e.vertex.hit.id]), path.beta * e.Le * e.weight);
+                         ++met, add(size_t(s.light_of[e.vertex.hit.id]),
+                                    path.beta * e.Le * e.weight, before);
                      if (e.direct.light)
-                         add(size_t(e.direct.light - s.lights.data()), path.beta * e.direct.L);
+                         add(size_t(e.direct.light - s.lights.data()), path.beta * e.direct.L,
+                             class_of(s.shapes[e.vertex.hit.id]));
+                     if (e.met) before = class_of(s.shapes[e.vertex.hit.id]);
                  });
     }
     CHECK(in_mirror > 100);
@@ -290,11 +293,10 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
               1e-6 * sum + 64000 * 0x1p-40 * of.sum);
     };
     for (size_t g = 0; g < 2; ++g) {
-        CHECK(came[g] > 0);
-        same(tally.near[g].from_light.came, groups[g].from_light, came[g]);
         int places = 0, unknown = 0;
-        for (size_t k = 0; k < brightnesses; ++k) {
+        for (size_t k = 0; k < classes; ++k) {
             (groups[g].from_eye[k].sum > 0 ? places : unknown) += came_in[g][k] > 0;
+            same(tally.near[g].from_light[k].came, groups[g].from_light[k], came[g][k]);
             CHECK(tally.near[g].from_eye[k].hits == hits[g][k]);
             same(tally.near[g].from_eye[k].came, groups[g].from_eye[k], came_in[g][k]);
             CHECK(value_of(tally.near[g].squares[k]) ==
@@ -302,20 +304,26 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
         }
         CHECK(places > 0);
         CHECK(unknown > 0);
+        CHECK(std::ranges::count_if(came[g], [](double x) { return x > 0; }) > 1);
     }
     // Of a light that brings nothing nothing came; one path brings at most 2^20.
-    groups[0].from_light.sum = 0, groups[1].from_light.sum = 1e-300;
+    for (size_t k = 0; k < classes; ++k)
+        groups[0].from_light[k].sum = 0, groups[1].from_light[k].sum = 1e-300;
     tally.near = std::vector<NearMisses>(2);
     for (uint64_t i = 0; i < 64; ++i)
         radiance(s, technique, settings, int(i % 8), int(i / 8), i,
                  NearMissVisitor{s, groups, each, tally});
-    CHECK(tally.near[0].from_light.came == 0);
-    CHECK(tally.near[1].from_light.came > 0);
-    CHECK(tally.near[1].from_light.came % (uint64_t(1) << 60) == 0);
+    uint64_t of_second = 0;
+    for (size_t k = 0; k < classes; ++k) {
+        CHECK(tally.near[0].from_light[k].came == 0);
+        of_second |= tally.near[1].from_light[k].came;
+    }
+    CHECK(of_second > 0);
+    CHECK(of_second % (uint64_t(1) << 60) == 0);
     Tally both = tally;
     both.add(tally);
-    CHECK(both.near[1].from_light.came == 2 * tally.near[1].from_light.came);
-    for (size_t k = 0; k < brightnesses; ++k) {
+    for (size_t k = 0; k < classes; ++k) {
+        CHECK(both.near[1].from_light[k].came == 2 * tally.near[1].from_light[k].came);
         CHECK(both.near[1].from_eye[k].came == 2 * tally.near[1].from_eye[k].came);
         CHECK(both.near[1].from_eye[k].hits == 2 * tally.near[1].from_eye[k].hits);
         CHECK(both.near[1].squares[k] == 2 * tally.near[1].squares[k]);
@@ -328,7 +336,7 @@ TEST_CASE("a light whose own paths bring more than those from the eye is in doub
     auto doubt = [](double part, double d2, std::vector<double> weights = {1},
                     bool is_from_eye = false) {
         NearMisses lamp{12, 1, 4, 0, 0};
-        (is_from_eye ? lamp.from_eye[5] : lamp.from_light) = {8, 2, 1, uint64_t(part * 4 * 0x1p40),
+        (is_from_eye ? lamp.from_eye : lamp.from_light)[5] = {8, 2, 1, uint64_t(part * 4 * 0x1p40),
                                                               10};
         MissedLight u;
         for (const double w : weights) u.add({lamp}, 4, w);
@@ -448,7 +456,7 @@ TEST_CASE("no light that is missing can double an error of half the picture") {
             const double d2 = error * error;
             const bool doubles = std::sqrt((d2 + u) / (1 + u)) > 2 * error;
             NearMisses lamp{12, 1, 4, 0, 0};
-            lamp.from_light = {1, u / 2};  // counted twice
+            lamp.from_light[2] = {1, u / 2};  // counted twice
             MissedLight unseen;
             unseen.add({lamp}, 1);
             CHECK(unseen.doubt(d2, std::sqrt(1 + d2), 1).empty() != doubles);
@@ -459,7 +467,7 @@ TEST_CASE("no light that is missing can double an error of half the picture") {
     CHECK(known > 100);
     // Where all is noise, the halves tell so.
     NearMisses lamp{12, 1, 4, 0, 0};
-    lamp.from_light = {1, 0.5};
+    lamp.from_light[2] = {1, 0.5};
     MissedLight unseen;
     unseen.add({lamp}, 1);
     CHECK(unseen.doubt(4, 1, 1).empty());

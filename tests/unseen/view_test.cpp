@@ -99,7 +99,8 @@ TEST_CASE("the eye's paths that aim find a lit room behind a hole, also in one m
         const double L = 0.5 / std::numbers::pi * 900 * 0.25 / std::pow(0.0625 + off * off, 1.5);
         CHECK(std::abs(sum / (L * area) - 1) < 0.3);
         CHECK(found(LightRecorder(s, {}, 0, 32).near_misses(1)).first > 0.5 * sum);
-        CHECK((in_view_by(Aims(s)).first == 0) == (mirrors > 0));
+        const auto [by_luck, its_error] = in_view_by(Aims(s));  // at mirrors, not at the hole
+        CHECK((by_luck <= 3 * its_error) == (mirrors > 0));
     }
 }
 
@@ -129,7 +130,7 @@ TEST_CASE("paths that aim and all others bring the same, where both may find it"
         const LightsInView many = lights_in_view(s, {0, 4}, {}, Aims(s).of_eye(s), 600000);
         for (size_t light = 0; light < 2; ++light) {
             double came = 0, sum = 0, variance = 0;
-            for (size_t k = 0; k < brightnesses; ++k) {
+            for (size_t k = 0; k < classes; ++k) {
                 const Brought& of = many.groups[light].from_eye[k];
                 sum += of.sum, variance += of.variance;
                 came += std::ldexp(double(tally.near[light].from_eye[k].came), -40) / double(n);
@@ -155,17 +156,17 @@ TEST_CASE("white walls do not hold a path from the eye for ever") {
     CHECK(most <= 33);
 }
 
-TEST_CASE("a place for every radiance: three octaves each, and eight places in turns") {
-    CHECK(place_of(1) == place_of(3.9));
-    CHECK(place_of(1) == place_of(std::ldexp(1.0, 24)));
-    std::set<size_t> places;
+TEST_CASE("a class for every radiance: three octaves each, and eight classes in turns") {
+    CHECK(class_of(1) == class_of(3.9));
+    CHECK(class_of(1) == class_of(std::ldexp(1.0, 24)));
+    std::set<size_t> seen;
     for (int octave = -1074; octave < 1024; ++octave) {
-        const size_t place = place_of(std::ldexp(1.0, octave));
-        REQUIRE(place < brightnesses);
-        places.insert(place);
+        const size_t k = class_of(std::ldexp(1.0, octave));
+        REQUIRE(k < classes);
+        seen.insert(k);
         if (octave >= -1071 && octave < 990)
-            CHECK(place_of(std::ldexp(1.0, octave + 3)) == (place + 1) % brightnesses);
+            CHECK(class_of(std::ldexp(1.0, octave + 3)) == (k + 1) % classes);
     }
-    CHECK(places.size() == brightnesses);
-    CHECK(place_of(std::numeric_limits<double>::infinity()) < brightnesses);
+    CHECK(seen.size() == classes);
+    CHECK(class_of(std::numeric_limits<double>::infinity()) < classes);
 }

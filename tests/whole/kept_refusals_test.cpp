@@ -66,8 +66,8 @@ TEST_CASE("a film of fewer samples than replications has one of each, and gets n
 TEST_CASE("a film of an earlier Penumbra is refused by its version") {
     const Kept folder;
     folder.keep("a.film", "--spp 17");
-    folder.write("b.film", "penumbra film 8" + folder.read("a.film").substr(15));
-    const std::string why = "b.film: is of another Penumbra: format version 8, not 9\n";
+    folder.write("b.film", "penumbra film 9" + folder.read("a.film").substr(16));
+    const std::string why = "b.film: is of another Penumbra: format version 9, not 10\n";
     folder.refuse("--spp 17 --keep b.film", why);
     for (const std::string program : {"merge -o y.pfm b.film", "compare b.film b.film"})
         expect_refusal(folder, program, why);
