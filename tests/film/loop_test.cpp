@@ -375,7 +375,7 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
         NearMisses& near = tally.near.at(size_t(s.x) % 3);
         near.sum[k][s.replication % 2] += fixed_point(tally.share / (1.0 + double(s.i)));
         near.squares[s.replication % 2] += fixed_point(tally.share / (1.0 + double(s.i)));
-        near.from_light.came += s.i < 4 ? 1000 : 1;
+        near.from_light[k % classes].came += s.i < 4 ? 1000 : 1;
         return noisy(s, tally);
     };
     auto film_by = [&](unsigned threads, int signal) {
@@ -397,7 +397,8 @@ TEST_CASE("near misses are the same by any number of threads, and of what Ctrl-C
             expected += 1.0 / one.weight[p] / double(1 + i);  // after the pilot
     // Of the pilot, too.
     uint64_t came = 0;
-    for (const NearMisses& g : one.near) came += g.from_light.came;
+    for (const NearMisses& g : one.near)
+        for (const Brought& of : g.from_light) came += of.came;
     CHECK(came == samples + 1000 * 4 * one.replications * one.pixels());
     for (const NearMisses& g : one.near)
         for (const auto& sums : g.sum) found += value_of(sums[0]) + value_of(sums[1]);
