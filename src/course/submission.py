@@ -106,7 +106,7 @@ def copies_at(path, wanted):
     raise Problem(f'the submission is neither a folder nor an archive ({", ".join(ARCHIVES)})')
 
 
-def class_of(path, wanted):
+def place_of(path, wanted):
     """(folder above src, file) of a wanted file; None for any other path, and where none is looked for."""
     file = next((file for file in wanted if path == file or path.endswith('/' + file)), None)
     root = path[:-len(file)] if file else ''
@@ -137,7 +137,7 @@ def all_paths(top):
 def copies_in_folder(top, wanted):
     copies, paths = {}, all_paths(top)
     for path in paths:
-        place = class_of(path, wanted)
+        place = place_of(path, wanted)
         if place:
             try:
                 with open_regular(top, path, place[1]) as opened:
@@ -247,7 +247,7 @@ def copies_in_archive(opened, wanted, outermost=True):
             if count >= MOST_ENTRIES:
                 raise Problem(f'the archive holds more than {MOST_ENTRIES} files')
             name = re.sub(r'^(\./)+', '', name)
-            place = class_of(name, wanted)
+            place = place_of(name, wanted)
             if place:
                 copy = copies.setdefault(place[0], {})
                 copy[place[1]] = Problem(f'the archive holds {place[1]} twice') if place[1] in copy else (

@@ -77,7 +77,7 @@ inline std::vector<Arrival> arrivals_of(const Scene& s) {
     return arrivals;
 }
 
-// Strengths count times the factor of what arrives.
+// Intensities count times the factor of what arrives.
 inline LightTree light_choice_for(const Scene& s) {
     std::vector<double> intensities = intensities_of(s.lights);
     const std::vector<Arrival> arrivals = arrivals_of(s);

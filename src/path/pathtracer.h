@@ -125,7 +125,7 @@ struct PathState {
 
 enum class End { no, leaves_scene, bounces, in_surface, reflects_nothing, roulette };
 
-// The events where that ray stopped.
+// What happens at the vertex where the last ray of a path stops.
 struct VertexEvents {
     bool met = false;  // true if the ray met a surface, at the vertex
     Vertex vertex = {};

@@ -149,7 +149,7 @@ struct PixelSample {
 
 // The numbers in [0,1) of one sample of one pixel.  They depend only on (seed, pixel, replication,
 // sample, dimension): any thread may draw any path at any time.  Each replication of a pixel
-// has a randomisation of its own.  The settings must outlive it.
+// has a randomisation of its own.  The settings must outlive the sampler.
 class Sampler {
 public:
     Sampler(const SamplerSettings& p, uint64_t pixel, uint64_t sample, uint32_t replication = 0)

@@ -150,7 +150,7 @@ public:
     // Every batch has as many.
     static uint64_t of_each(uint64_t samples) { return (samples + batches - 1) / batches; }
 
-    // SamplerSettings of as many dimensions as the numbers of a walk have.
+    // Settings of a sampler of as many dimensions as a walk has numbers.
     static SamplerSettings settings(SamplerKind kind, uint64_t seed) {
         return sampler_settings(kind, seed, 5);
     }

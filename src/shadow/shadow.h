@@ -85,7 +85,7 @@ struct ShadowSample {
     Shadowed first;
 };
 
-// Adds up the steps of a path as Li does.
+// Adds up what the vertices of a path bring, as Li does.
 template <class Visitor>
 ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, Visitor visit) {
     ShadowSample sample;
@@ -130,9 +130,9 @@ inline SampleFunction shadow_estimate(const Scene& scene, const Technique& t,
         ShadowPixel pixel;
         for (s.i = 0; s.i < n; ++s.i) {
             const Start at = start(scene, settings, s);
-            auto count = [&tally](const PathState&, const VertexEvents& step) {
+            auto count = [&tally](const PathState&, const VertexEvents& here) {
                 if (interrupted) throw Interrupted();
-                tally.rays += 1 + (step.direct.light != nullptr);
+                tally.rays += 1 + (here.direct.light != nullptr);
             };
             const ShadowSample one = shadow_Li(scene, t, at, count);
             if (!fits_float(one.rest) || !is_finite(one.first))

@@ -1,6 +1,7 @@
 // unseen/aims.h  2  directions that aim at gaps and at small things
 #pragma once
 #include <numeric>
+#include <tuple>
 #include <vector>
 
 #include "base/rng.h"
@@ -28,46 +29,54 @@ struct Chosen {
     }
 };
 
-// How bright lights would make a shape, at its centre, if nothing were in between.
-class Shine {
+// At most so many of these numbers: the half of the greatest worth, and others by lot.
+template <class Worth>
+std::vector<size_t> half_of_greatest(const std::vector<size_t>& numbers, size_t most, Worth worth) {
+    if (numbers.size() <= most) return numbers;
+    std::vector<std::tuple<real, uint64_t, size_t>> order;  // those of equal worth by lot
+    for (const size_t i : numbers) order.emplace_back(-worth(i), hash(i, 1), i);
+    std::ranges::sort(order);
+    std::vector<size_t> chosen;
+    Chosen<size_t> others{most - most / 2};
+    for (const auto& [less, lot, i] : order)
+        chosen.size() < most / 2 ? chosen.push_back(i) : others.add(i);
+    chosen.insert(chosen.end(), others.items.begin(), others.items.end());
+    return chosen;
+}
+
+// The radiosity rho E of shapes, up to a factor, as if nothing were between a shape's centre and
+// the lights, and it faced each of them.  Of more than 64 lights it knows the 32 of the greatest
+// intensity, and others by lot.
+class EstimatedRadiosity {
 public:
-    explicit Shine(const Scene& s) : scene_(s) {
-        const std::vector<DistantLight> all = from_afar(s.lights, intensities_of(s.lights));
-        Chosen<std::pair<int32_t, DistantLight>> lights{64};
-        for (size_t i = 0; i < all.size(); ++i) lights.add({int32_t(i), all[i]});
-        lights_ = lights.items;
+    explicit EstimatedRadiosity(const Scene& s)
+        : scene_(s),
+          lights_(from_afar(s.lights, intensities_of(s.lights))),
+          chosen_(lights_.size()) {
+        std::iota(chosen_.begin(), chosen_.end(), 0);
+        chosen_ = half_of_greatest(chosen_, 64, [&](size_t i) { return lights_[i].intensity; });
     }
-    real albedo(size_t shape) const {
+    // rho, in the direction of the normal: pi f, at most 1.
+    real reflectance(size_t shape) const {
         const Material& m = scene_.materials[scene_.material_of[shape]];
         const vec3 n{0, 0, 1};
         return m.is_delta() ? 1 : std::min(real(1), pi * max_of(eval(m, n, n)));
     }
-    real on(size_t shape) const {
+    // By other lights than itself; 0 about a point light, where E is infinite.
+    real of(size_t shape) const {
         const Shape& s = scene_.shapes[shape];
         const vec3 p = s.is_triangle() ? (s.a + s.b + s.c) / 3 : s.a;
-        real sum = 0;
-        for (const auto& [i, light] : lights_)
-            if (i != scene_.light_of[shape])  // its own
-                sum += light_weight(light, p, unit(light.centre - p)).value;
-        return sum < infinity ? sum * albedo(shape) : 0;
-    }
-    // At most so many of these shapes: the half that is brightest, and others by lot.
-    std::vector<size_t> choose(const std::vector<size_t>& shapes, size_t most) const {
-        if (shapes.size() <= most) return shapes;
-        std::vector<std::pair<real, size_t>> order;
-        for (const size_t i : shapes) order.emplace_back(-on(i), i);
-        std::ranges::sort(order);
-        std::vector<size_t> chosen;
-        Chosen<size_t> others{most - most / 2};
-        for (size_t k = 0; k < order.size(); ++k)
-            k < most / 2 ? chosen.push_back(order[k].second) : others.add(order[k].second);
-        chosen.insert(chosen.end(), others.items.begin(), others.items.end());
-        return chosen;
+        real E = 0;
+        for (const size_t i : chosen_)
+            if (int32_t(i) != scene_.light_of[shape])
+                E += light_weight(lights_[i], p, unit(lights_[i].centre - p)).value;
+        return E < infinity ? E * reflectance(shape) : 0;
     }
 
 private:
     const Scene& scene_;
-    std::vector<std::pair<int32_t, DistantLight>> lights_;
+    std::vector<DistantLight> lights_;
+    std::vector<size_t> chosen_;
 };
 
 // Aims of a scene, in views.  A view is a list of mirrors, in the order in which a ray meets them,
@@ -76,13 +85,13 @@ class Aims {
     using View = std::vector<size_t>;
 
 public:
-    // 128 edges, but no diagonals of quads, 64 shapes and lamps, 128 mirrors; no more than half of
-    // the edges and shapes from one run of shapes of one material, for a mesh has thousands: of
-    // 2048 by lot.  Each shape has two aims, see grown.
+    // At most 128 edges, but no diagonals of quads, 64 shapes, each in two sizes, 64 lamps and 128
+    // mirrors.  No more than half of the edges and shapes come from one run of shapes of one
+    // material, for a mesh has thousands; of a run 2048 shapes by lot are compared.
     explicit Aims(const Scene& s) {
         Chosen<EdgeAim> edges{128}, of_run{64};
         Chosen<size_t> shapes{2048}, shapes_of_run{2048}, lamps{64};
-        const Shine shine(s);
+        const EstimatedRadiosity radiosity(s);
         Chosen<PlaneMirror> mirrors{128};
         auto normal = [&](size_t i) { return unit(area_vector(s.shapes[i])); };
         auto halves = [&](size_t i, size_t j) {  // of a quad
@@ -92,15 +101,18 @@ public:
         auto is_flat = [&](size_t i, size_t j) {  // but for rounding
             return halves(i, j) && length(normal(i) - normal(j)) < real(1e-4);
         };
+        auto most_lit = [&](const std::vector<size_t>& of, size_t most) {
+            return half_of_greatest(of, most, [&](size_t i) { return radiosity.of(i); });
+        };
         auto end_run = [&] {
             edges.take(of_run);
-            shapes_of_run.items = shine.choose(shapes_of_run.items, 32);
+            shapes_of_run.items = most_lit(shapes_of_run.items, 32);
             shapes.take(shapes_of_run);
         };
         for (size_t i = 0; i < s.shapes.size(); ++i) {
             if (i > 0 && s.material_of[i] != s.material_of[i - 1]) end_run();
             if (s.light_of[i] != no_light) lamps.add(i);
-            if (s.light_of[i] == no_light || shine.albedo(i) > 0) shapes_of_run.add(i);
+            if (s.light_of[i] == no_light || radiosity.reflectance(i) > 0) shapes_of_run.add(i);
             if (s.light_of[i] != no_light || !s.shapes[i].is_triangle()) continue;
             const auto& [a, b, c, r] = s.shapes[i];
             of_run.add({b, c, a});
@@ -112,11 +124,11 @@ public:
         end_run();
         for (const EdgeAim& edge : edges.items)  // one of two triangles counts once
             if (std::ranges::find(edges_, edge) == edges_.end()) edges_.push_back(edge);
-        for (const size_t i : shine.choose(shapes.items, 64))
+        for (const size_t i : most_lit(shapes.items, 64))
             for (const Shape& shape : {s.shapes[i], grown(s.shapes[i])})
-                shapes_.push_back(ShapeAim(shape)), shine_.push_back(double(shine.on(i)));
-        const double all = std::accumulate(shine_.begin(), shine_.end(), 0.0);
-        for (double& x : shine_) x = all > 0 ? x / all : 1 / double(shine_.size());
+                shapes_.push_back(ShapeAim(shape)), radiosity_.push_back(double(radiosity.of(i)));
+        const double all = std::accumulate(radiosity_.begin(), radiosity_.end(), 0.0);
+        for (double& x : radiosity_) x = all > 0 ? x / all : 1 / double(radiosity_.size());
         mirrors_ = mirrors.items;
         if (!mirrors_.empty())
             for (const size_t i : lamps.items) lamps_.push_back(ShapeAim(s.shapes[i]));
@@ -195,7 +207,7 @@ public:
 private:
     std::vector<EdgeAim> edges_;
     std::vector<ShapeAim> shapes_, lamps_;  // lamps in mirrors; others have samples of their own
-    std::vector<double> shine_;             // of the shapes; the sum is 1
+    std::vector<double> radiosity_;         // of the shapes, relative to their sum
     std::vector<CornerAim> corners_;
     std::vector<PlaneMirror> mirrors_;
     std::vector<View> views_{{}};
@@ -218,8 +230,8 @@ private:
     }
     // Of all directions from a light 3/4 aim at edges, the others at shapes; of those from the eye
     // in view 0 1/2 at edges, 1/4 at corners; of those in mirrors 1/2 at edges, 1/3 at lamps.  Half
-    // of those at shapes go where lights shine.  Per 4 in view 0 there are 3 in single mirrors, and
-    // 3 in longer lists.
+    // of those at shapes are in proportion to radiosity.  Per 4 in view 0 there are 3 in single
+    // mirrors, and 3 in longer lists.
     void share() {
         const double singles = double(mirrors_.size());
         const double longer = double(views_.size()) - 1 - singles;
@@ -231,8 +243,8 @@ private:
                 part_.insert(part_.end(), n, part / alike / double(n));
             };
             add(edges_.size(), has_corners ? 2 : 3), add(shapes_.size(), 0.5);
-            for (size_t i = 0; i < shine_.size(); ++i)
-                part_[part_.size() - shine_.size() + i] += shine_[i] / 2 / alike;
+            for (size_t i = 0; i < radiosity_.size(); ++i)
+                part_[part_.size() - radiosity_.size() + i] += radiosity_[i] / 2 / alike;
             add(lamps_.size(), view.empty() ? 0 : 2), add(corners_.size(), has_corners ? 1 : 0);
         }
         const double all = std::accumulate(part_.begin(), part_.end(), 0.0);

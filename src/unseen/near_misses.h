@@ -27,7 +27,11 @@ struct Brought {
     double sum = 0, squares = 0, variance = 0;
     uint64_t came = 0, hits = 0;  // in 2^-40 of the sum; paths that brought it
 
-    void add_came(const Brought& other) { came += other.came, hits += other.hits; }
+    // It never overflows.
+    void add(uint64_t more, uint64_t of_hits) {
+        came = std::min(came + more, uint64_t(1) << 62), hits += of_hits;
+    }
+    void add_came(const Brought& other) { add(other.came, other.hits); }
 };
 
 // What a film knows of a group of lights: how the camera sees them, and near misses (src/unseen).

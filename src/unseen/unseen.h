@@ -60,12 +60,15 @@ private:
     void add_came(size_t light, rgb L, const Shape& lit) {
         const double mean = double(mean_of(L));
         if (groups.empty() || !(mean > 0)) return;
-        const size_t g = group_of[light], k = class_of(mean), size = class_of(lit);
+        const size_t g = group_of[light], k = class_of(mean);
         auto add = [&](const Brought& of, Brought& to) {
             const double part = of.sum > 0 ? mean * tally.share / of.sum : 0;
-            to.came += uint64_t(0x1p40 * std::min(0x1p20, part)), ++to.hits;
+            to.add(uint64_t(0x1p40 * std::min(0x1p20, part)), 1);
         };
-        if (is_seen) add(groups[g].from_light[size], tally.near[g].from_light[size]);
+        if (is_seen) {
+            const size_t size = class_of(lit);
+            add(groups[g].from_light[size], tally.near[g].from_light[size]);
+        }
         add(groups[g].from_eye[k], tally.near[g].from_eye[k]);
         const double c = mean_square(L) / groups[g].L2 * square(tally.share);
         if (c > 0) tally.near[g].squares[k] += fixed_point(0x1p20 * c);

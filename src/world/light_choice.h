@@ -84,7 +84,7 @@ struct ChosenLight {
     real probability = 1;
 };
 
-// Of each light, see lights.h.
+// The intensity of each light, see lights.h.
 inline std::vector<double> intensities_of(const std::vector<Light>& lights) {
     std::vector<double> all;
     for (const Light& l : lights) all.push_back(intensity(l));

@@ -22,8 +22,8 @@ struct Emitter {
     vec3 p = {};       // centre of a sphere, corner of a polygon, the point
     rgb L = {};        // radiance; of a point: intensity, radiance x length^2
     real error = 0;    // of surface points, see Surface
-    vec3 centre = {};  // of a sphere that holds it
-    real radius = 0;
+    vec3 centre = {};  // of a sphere that holds the light
+    real radius = 0;   // of that sphere
     vec3 n = {};        // unit normal of its bright side; 0 if it shines in all directions
     real pdf_area = 0;  // of a polygon: density of uniform points, 1 / its area
     bool twosided = false;

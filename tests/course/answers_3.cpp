@@ -49,7 +49,7 @@ Sampler sampler(double seed) {
 Technique technique(In x) { return {Direction(int(x[1])), LightMode(int(x[0])), real(x[2])}; }
 
 // 17 numbers.
-PathState segment(In x) {
+PathState path_state(In x) {
     const Ray ray{vec3_of(x, 0), vec3_of(x, 3)};
     return {ray, vec3_of(x, 6), real(x[9]), vec3_of(x, 10), int(x[13]), vec3_of(x, 14)};
 }
@@ -57,7 +57,7 @@ PathState segment(In x) {
 // In glass there is one more number, eta2.
 VertexEvents asked_step(In x) {
     const Sampler numbers_of_path = sampler(x[3]);
-    PathState arrives = segment(x.subspan(4));
+    PathState arrives = path_state(x.subspan(4));
     if (x.size() > 21) arrives.eta2 = real(x[21]);
     return step(scene, technique(x), arrives, numbers_of_path);
 }
@@ -104,7 +104,7 @@ Out light_sample(In x) {
                at->at.p, s->at.p, d.L, d.pdf, d.weight, d.occluded);
 }
 
-// How often visit is called, and how often with the segment whose turn it is.
+// How often visit is called, and how often with the path whose turn it is.
 Out visits(In x) {
     int calls = 0, in_turn = 0;
     Li(scene, technique(x), {vec3_of(x, 4), vec3_of(x, 7)}, sampler(x[3]),
@@ -122,13 +122,13 @@ Vertex on_a_light(In x) {
 }
 
 real weight(In x) {
-    return weight_of_emission(scene, technique(x), segment(x.subspan(3)),
+    return weight_of_emission(scene, technique(x), path_state(x.subspan(3)),
                               on_a_light(x.subspan(20)));
 }
 
 // How likely a light sample from there is to choose that light, and the density of its point.
 Out likelihood(In x) {
-    const PathState s = segment(x.subspan(3));
+    const PathState s = path_state(x.subspan(3));
     const Vertex y = on_a_light(x.subspan(20));
     const size_t light = size_t(scene.light_of[y.hit.id]);
     return row(scene.light_choice.probability_of(light, s.from, s.n),

@@ -83,7 +83,7 @@ Out seen_along_z(double w, double h, double x, double y) {
     return {0, 0, 0, 0, 0, -1, 90, w, h, x, y};
 }
 // The place of that image that a direction goes through.
-std::string class_of(Triple d, double w, double h) {
+std::string place_of(Triple d, double w, double h) {
     if (!(d[2] < 0)) return "no place of the image";
     return say("(%.4g, %.4g)", (w - h * d[0] / d[2]) / 2, (h + h * d[1] / d[2]) / 2);
 }
@@ -121,7 +121,7 @@ void camera(Judge& j) {
         j.vector(what, came, unit(to), digits);
         j.items.back().seen += say(": the ray for (%g, %g) of %g x %g goes through ", asked[9],
                                    asked[10], asked[7], asked[8]) +
-                               class_of(came, asked[7], asked[8]);
+                               place_of(came, asked[7], asked[8]);
     }
     const Out tilted = j.ask("camera_ray", Out{0, 0, 0, 0, -3, -4, 90, 64, 32, 32, 0});
     j.vector("the camera tilted: up is at right angles to where it looks", triple(tilted, 3),

@@ -21,7 +21,7 @@ void within_a_hall_of_mirrors(Judge& j, const Triple& Le, const std::vector<int>
                  triple(L[0]), (2 - std::ldexp(1, -depth)) * Le, tolerance(j));
     }
 }
-// Other code counts rays by it: each vertex once, with the segment that arrived there.
+// Other code counts rays by it: each vertex once, with the path that arrived there.
 void visits_of_all(Judge& j) {
     const Stuff mirror{Stuff::mirror, {}, {0.5, 0.5, 0.5}};
     build(j, 7, {ball({0, 0, 0}, 2, mirror)});
@@ -36,7 +36,7 @@ void visits_of_all(Judge& j) {
         "visit is called for a ray that meets nothing, too: at a mirror, and for the ray that it "
         "sends away",
         two[0], 2, 0);
-    j.number("visit is called with the segment that arrived at the vertex: how often of 8",
+    j.number("visit is called with the path that arrived at the vertex: how often of 8",
              eight[1], 8, 0);
 }
 
@@ -49,10 +49,10 @@ void a_lit_ball_and_its_image(Judge& j) {
     const Technique t{by_aiming, uniform};
     const Out straight = ray({0, 0, 4.5}, {0, 0, -1}), image = ray({0, 0.02, 4}, {0, 0, 1});
     const Rows L = j.probe("Li", {question(t, 1, straight), question(t, 1, image)});
-    const Step first = take_step(j, t, 1, segment({0, 0, 4.5}, {0, 0, -1}));
+    const Step first = take_step(j, t, 1, path_state({0, 0, 4.5}, {0, 0, -1}));
     colour(j, "light found by aiming counts in full where the eye looks", triple(L[0]),
            first.direct);
-    const Step mirrored = take_step(j, t, 1, segment({0, 0.02, 4}, {0, 0, 1}));
+    const Step mirrored = take_step(j, t, 1, path_state({0, 0.02, 4}, {0, 0, 1}));
     const Step seen = take_step(j, t, 1, mirrored.next);
     colour(j, "light found by aiming counts half in a mirror that takes half", triple(L[1]),
            0.5 * seen.direct);
@@ -64,7 +64,7 @@ void a_lamp_is_lit(Judge& j) {
     build(j, 2, {ball({0, 0, 0}, 1, lamp), point_light({4, 1, 3}, {300, 200, 100})});
     const Technique t{by_aiming, uniform};
     const Rows L = j.probe("Li", Rows(question(t, 1, ray({0, 0, 4.5}, {0, 0, -1}))));
-    const Step s = take_step(j, t, 1, segment({0, 0, 4.5}, {0, 0, -1}));
+    const Step s = take_step(j, t, 1, path_state({0, 0, 4.5}, {0, 0, -1}));
     colour(j, "a lamp on which another one shines: what it emits, and what it reflects",
            triple(L[0]), s.weight * s.Le + s.direct);
 }
@@ -78,7 +78,7 @@ void a_lamp_is_met(Judge& j) {
     int met = 0;
     Out came, by_aim, emitted, by_weight;
     for (uint64_t seed = 0; seed < 64 && met < 8; ++seed) {
-        const Step floor = take_step(j, t, seed, segment(eye, d));
+        const Step floor = take_step(j, t, seed, path_state(eye, d));
         if (!floor.goes_on) continue;
         const Step then = take_step(j, t, seed, floor.next);
         if (then.Le[0] == 0) continue;
@@ -119,7 +119,7 @@ const Triple towards{0.48, 0.6, 0.64};  // unit: where the eye is, seen from the
 Out towards_a_ball(double aside = 0, const Triple& before = {1, 1, 1}, int k = 0) {
     const Triple o = 5 * towards + aside * Triple{0.64, 0, -0.48};
     const Triple to = towards - o;
-    return segment(o, unit(to), before, k);
+    return path_state(o, unit(to), before, k);
 }
 
 void of_a_mirror(Judge& j) {
@@ -205,7 +205,7 @@ void of_any_ball(Judge& j, bool outside) {
             const Triple to = 0.5 * any_direction(j.random);
             const int k = int(10 * j.random());
             s.look(j, {by_chance, i % 2 ? uniform : by_bsdf}, any_seed(j),
-                   segment(pose.at(o), pose.turned(unit(to - o)), before, k), before);
+                   path_state(pose.at(o), pose.turned(unit(to - o)), before, k), before);
         }
         s.judge(j, oracle::say("f |cos| / pdf of %s ball, %s, in any place and pose", names[kind],
                                outside ? "from outside" : "from within"));

@@ -238,7 +238,7 @@ struct Place {
 };
 
 Out met(const Technique& t, double pdf, const Place& y) {
-    const Out s = segment({0, 0, 0}, unit(y.p), {1, 1, 1}, int(y.k), pdf, {0, 0, 1});
+    const Out s = path_state({0, 0, 0}, unit(y.p), {1, 1, 1}, int(y.k), pdf, {0, 0, 1});
     return row(t.numbers(), s, y.shape, y.p, y.n);
 }
 
@@ -338,7 +338,7 @@ void of_any_lamp(Judge& j) {
             const Triple from = pose.at(0.5 * in_cube(j.random));
             const Technique t{i % 4 ? by_both : by_aiming};
             const double p = std::pow(100, 2 * j.random() - 1);
-            const Out s = segment(from, unit(y.p - from), {1, 1, 1}, 1 + i % 5, p,
+            const Out s = path_state(from, unit(y.p - from), {1, 1, 1}, 1 + i % 5, p,
                                   unit(unit(y.p - from) + 0.5 * any_direction(j.random)));
             const Out asked = row(t.numbers(), s, y.shape, y.p, y.n);
             const Out both = j.ask("likelihood", asked);

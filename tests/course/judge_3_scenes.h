@@ -54,7 +54,7 @@ struct Technique {
 };
 
 // A path's ray that was drawn with density pdf after k scatterings, n being the normal it left.
-Out segment(const Triple& o, const Triple& d, const Triple& beta = {1, 1, 1}, int k = 0,
+Out path_state(const Triple& o, const Triple& d, const Triple& beta = {1, 1, 1}, int k = 0,
             double pdf = oracle::infinity, const Triple& n = {}) {
     return row(o, d, o, pdf, beta, k, n);
 }

@@ -79,7 +79,14 @@ TEST_CASE("of many edges and shapes each is as likely as any other, until paths 
             return int(std::clamp(x, real(0), real(299))) / 100 == which;
         });
     };
-    for (int which = 0; which < 3; ++which) CHECK(third(which) > 0.2);
+    for (int which = 0; which < 3; ++which) {
+        CHECK(third(which) > 0.2);
+        const auto is_shape_of = [&](const Aims::Aim& aim) {
+            const real x = (y - aim.d * (1000 / aim.d.z)).x;
+            return aim.at >= 64 && int(std::clamp(x, real(0), real(299))) / 100 == which;
+        };
+        CHECK(part_of_aims(aims, y, 3000, is_shape_of) > 0.03);  // of 1/4
+    }
     auto at = [](size_t i) { return [i](const Aims::Aim& aim) { return aim.at == i; }; };
     auto is_shape = [](const Aims::Aim& aim) { return aim.at >= 64; };
     CHECK(std::abs(part_of_aims(aims, y, 10000, is_shape) - 0.25) < 0.03);
@@ -97,23 +104,25 @@ TEST_CASE("of many edges and shapes each is as likely as any other, until paths 
 
 TEST_CASE("of many shapes the half is aimed at on which lights shine most, and others by lot") {
     Scene s;
-    s.materials = {{Rough({0.5, 0.5, 0.5})}, {}};
-    s.materials[1].Le = {1, 1, 1};
+    s.materials = {{Rough({0.5, 0.5, 0.5})}, {}, {}};
+    s.materials[1].Le = {3, 3, 3}, s.materials[2].Le = {1, 1, 1};
     for (int k = 0; k < 300; ++k) add_sphere(s, {real(k), 0, 0}, real(0.1), 0);
-    // A lamp beside ball 210, and others far away.
+    // A lamp beside ball 210, and a thousand others far away.
     add_sphere(s, {real(210.1), 2, 0}, real(0.5), 1);
-    for (int k = 0; k < 9; ++k) add_sphere(s, {real(k), 900, 0}, real(0.5), 1);
+    for (int k = 0; k < 1000; ++k) add_sphere(s, {real(k), 900, 0}, real(0.5), 2);
     prepare(s);
     const Aims aims(s);
     CHECK(aims.size() == 2 * 32);
     const vec3 y{150, 0, 1000};
     int lit = 0, in_dark = 0;
+    std::array<int, 3> thirds{};
     for (int k = 0; k < 300; ++k)
         if (aims.pdf(y, unit(vec3{real(k), 0, 0} - y)) > 0)
-            ++(std::abs(double(k) - 210.1) < 8 ? lit : in_dark);
+            ++(std::abs(double(k) - 210.1) < 8 ? lit : in_dark), ++thirds[size_t(k / 100)];
     CHECK(lit >= 16);
     CHECK(lit < 20);
     CHECK(lit + in_dark == 32);
+    for (int n : thirds) CHECK(n > 0);
 }
 
 TEST_CASE("half of the aims at shapes go where lights shine, in proportion to the albedo") {
@@ -157,10 +166,10 @@ TEST_CASE("a small thing is not lost in a mesh of another material") {
         if (is_last) add_sphere(s, {0, 0, 9}, real(0.01), 1);
         const Aims aims(s);
         CHECK(aims.size() == 64 + 2 * 33);
-        const double part = part_of_aims(aims, {0, 0, 19}, 20000, [&](const Aims::Aim& aim) {
+        const double part = part_of_aims(aims, {0, 0, 19}, 100000, [&](const Aims::Aim& aim) {
             return aim.at >= 64 && double(-aim.d.z) > 0.9999995;  // 0.01 at 10
         });
-        CHECK(std::abs(part - 0.25 / 66 * (1 + 1 / 9.0)) < 0.002);
+        CHECK(std::abs(part - 0.25 / 66 * (1 + 1 / 9.0)) < 0.0007);
     }
     // Many runs, each of its own, and 128 edges of them all.
     Scene s;
@@ -171,7 +180,7 @@ TEST_CASE("a small thing is not lost in a mesh of another material") {
     CHECK(Aims(s).size() == 128 + 2 * 64);
 }
 
-TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; lamps have none") {
+TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; black lamps have none") {
     Scene s;
     s.materials = {{}, {}, {Mirror({1, 1, 1})}};
     s.materials[1].Le = {1, 1, 1};

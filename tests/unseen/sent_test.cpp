@@ -105,6 +105,18 @@ TEST_CASE("paths from a light and paths from the eye bring the same to the pictu
     }
 }
 
+TEST_CASE("the class of a shape is that of its area") {
+    for (real x = real(0.01); x < 100; x *= real(1.3)) {
+        Scene s;
+        s.materials = {{}};
+        add_sphere(s, {1, 2, 3}, x, 0);
+        add_triangle(s, {1, 2, 3}, {1 + x, 2, 3}, {1, 2 + x, 3}, 0);
+        CHECK(class_of(s.shapes[0]) == class_of(4 * std::numbers::pi * double(x) * double(x)));
+        const vec3 e = s.shapes[1].b - s.shapes[1].a, f = s.shapes[1].c - s.shapes[1].a;
+        CHECK(class_of(s.shapes[1]) == class_of(double(e.x * f.y) / 2));
+    }
+}
+
 TEST_CASE("white walls do not hold a path for ever") {
     // The lamp is a point, so that nothing absorbs.
     Scene s = room(nullptr, {Rough({1, 1, 1})});
