@@ -183,6 +183,12 @@ inline size_t class_of(const Shape& shape) {
                                         : 4 * std::numbers::pi * sqr(double(shape.r)));
 }
 
+inline std::vector<uint8_t> area_classes(const Scene& s) {
+    std::vector<uint8_t> all;
+    for (const Shape& shape : s.shapes) all.push_back(uint8_t(class_of(shape)));
+    return all;
+}
+
 // What each group of lights sends to the picture, by so many paths, half of which the lights share
 // alike and half by their intensities.  Half of the paths learn where to aim, the others count.
 inline PictureSums sent_by_lights(const Scene& s, const Band& band, Aims aims, uint64_t paths) {

@@ -41,6 +41,7 @@ struct NearMissVisitor {
     const Scene& scene;
     const std::vector<NearMisses>& groups;
     const std::vector<size_t>& group_of;  // of each light
+    const std::vector<uint8_t>& area_class;
     Tally& tally;
     bool is_seen = false;  // the first surface is no mirror or glass
     uint32_t before = 0;   // shape of the last vertex
@@ -50,14 +51,14 @@ struct NearMissVisitor {
         if (path.k > 0 && std::isinf(path.pdf) && !groups.empty()) add_near_misses(path, here);
         const uint32_t shape = here.met ? here.vertex.hit.id : 0;
         visit_lights(scene, path, here, [&](size_t light, rgb L, bool is_met) {
-            add_came(light, L, scene.shapes[is_met ? before : shape]);
+            add_came(light, L, area_class[is_met ? before : shape]);
         });
         before = shape;
     }
 
 private:
     // A path may bring up to 2^20 times what lights bring to all of the picture.
-    void add_came(size_t light, rgb L, const Shape& lit) {
+    void add_came(size_t light, rgb L, size_t lit) {
         const double mean = double(mean_of(L));
         if (groups.empty() || !(mean > 0)) return;
         const size_t g = group_of[light], k = class_of(mean);
@@ -65,10 +66,7 @@ private:
             const double part = of.sum > 0 ? mean * tally.share / of.sum : 0;
             to.add(uint64_t(0x1p40 * std::min(0x1p20, part)), 1);
         };
-        if (is_seen) {
-            const size_t size = class_of(lit);
-            add(groups[g].from_light[size], tally.near[g].from_light[size]);
-        }
+        if (is_seen) add(groups[g].from_light[lit], tally.near[g].from_light[lit]);
         add(groups[g].from_eye[k], tally.near[g].from_eye[k]);
         const double c = mean_square(L) / groups[g].L2 * square(tally.share);
         if (c > 0) tally.near[g].squares[k] += fixed_point(0x1p20 * c);
@@ -214,7 +212,7 @@ class LightRecorder {
 public:
     LightRecorder(const Scene& scene, const Technique& t, int first_row, int rows,
                   const std::vector<uint32_t>& line_of_light = {})
-        : scene_(scene), group_of_(light_groups(scene)) {
+        : scene_(scene), group_of_(light_groups(scene)), area_class_(area_classes(scene)) {
         const Band band{first_row, rows};
         const uint64_t paths = aimed_paths(scene, band);
         const Aims aims(scene);
@@ -239,11 +237,14 @@ public:
         unseen.add(film.near, double(film.min_samples_done()));
         return unseen.doubt(error.d2(), error.norm(), error.pixels);
     }
-    NearMissVisitor visitor(Tally& tally) const { return {scene_, view_.groups, group_of_, tally}; }
+    NearMissVisitor visitor(Tally& tally) const {
+        return {scene_, view_.groups, group_of_, area_class_, tally};
+    }
 
 private:
     const Scene& scene_;
     const std::vector<size_t> group_of_;
+    const std::vector<uint8_t> area_class_;
     LightsInView view_;
 };
 

@@ -14,6 +14,7 @@ namespace {
 // shape that is lit first is of class k.
 double came(const Scene& s, const SamplerSettings& settings, uint64_t i) {
     const std::vector<size_t> group_of = light_groups(s);
+    const std::vector<uint8_t> sizes = area_classes(s);
     std::vector<NearMisses> groups(s.lights.size());
     for (NearMisses& g : groups)
         for (Brought& of : g.from_light) of.sum = 1;
@@ -21,7 +22,7 @@ double came(const Scene& s, const SamplerSettings& settings, uint64_t i) {
     tally.near.resize(groups.size());
     const uint64_t w = uint64_t(s.size.width), pixels = w * uint64_t(s.size.height);
     const int x = int(i % pixels % w), y = int(i % pixels / w);
-    radiance(s, {}, settings, x, y, i, NearMissVisitor{s, groups, group_of, tally});
+    radiance(s, {}, settings, x, y, i, NearMissVisitor{s, groups, group_of, sizes, tally});
     double sum = 0;
     for (size_t k = 0; k < classes; ++k)
         sum += double(k + 1) * std::ldexp(double(tally.near[0].from_light[k].came), -40);

@@ -246,6 +246,7 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
     add_sphere(s, {-1, real(1.1), 3}, real(0.05), 1);
     prepare(s);
     const std::vector<size_t> each = {0, 1};
+    const std::vector<uint8_t> sizes = area_classes(s);
     std::vector<NearMisses> groups(2);
     for (NearMisses& g : groups)
         for (size_t k = 0; k < classes; ++k) g.from_eye[k].sum = double(k % 2 * k), g.L2 = 3;
@@ -261,7 +262,7 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
     for (uint64_t i = 0; i < 64000; ++i) {
         bool is_seen = false;
         size_t before = 0;  // class of the shape that the path left
-        NearMissVisitor misses{s, groups, each, tally};
+        NearMissVisitor misses{s, groups, each, sizes, tally};
         radiance(s, technique, settings, int(i % 8), int(i / 8 % 8), i,
                  [&](const PathState& path, const VertexEvents& e) {
                      misses(path, e);
@@ -312,7 +313,7 @@ TEST_CASE("what came of a light is its part of the radiance behind surfaces that
     tally.near = std::vector<NearMisses>(2);
     for (uint64_t i = 0; i < 64; ++i)
         radiance(s, technique, settings, int(i % 8), int(i / 8), i,
-                 NearMissVisitor{s, groups, each, tally});
+                 NearMissVisitor{s, groups, each, sizes, tally});
     uint64_t of_second = 0;
     for (size_t k = 0; k < classes; ++k) {
         CHECK(tally.near[0].from_light[k].came == 0);

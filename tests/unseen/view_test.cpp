@@ -116,6 +116,7 @@ TEST_CASE("paths that aim and all others bring the same, where both may find it"
         add_quad(s, {real(-1.2), real(0.3), real(-0.3)}, {real(0.9), 0, real(0.3)}, {0, 1, 0}, 2);
         prepare(s);
         const std::vector<size_t> each = {0, 1};
+        const std::vector<uint8_t> sizes = area_classes(s);
         std::vector<NearMisses> groups(2);
         for (NearMisses& g : groups)
             for (Brought& of : g.from_eye) of.sum = 1;
@@ -126,7 +127,7 @@ TEST_CASE("paths that aim and all others bring the same, where both may find it"
         for (uint64_t i = 0; i < n; ++i)
             for (int pixel = 0; pixel < 24; ++pixel)
                 radiance(s, {}, settings, pixel % 6, pixel / 6, i,
-                         NearMissVisitor{s, groups, each, tally});
+                         NearMissVisitor{s, groups, each, sizes, tally});
         const LightsInView many = lights_in_view(s, {0, 4}, {}, Aims(s).of_eye(s), 600000);
         for (size_t light = 0; light < 2; ++light) {
             double came = 0, sum = 0, variance = 0;
