@@ -87,10 +87,10 @@ class Aims {
 public:
     // At most 128 edges, but no diagonals of quads, 64 shapes, each in two sizes, 64 lamps and 128
     // mirrors.  No more than half of the edges and shapes come from one run of shapes of one
-    // material, for a mesh has thousands; of a run 2048 shapes by lot are compared.
+    // material, for a mesh has thousands; of a run 256 shapes by lot are compared.
     explicit Aims(const Scene& s) {
         Chosen<EdgeAim> edges{128}, of_run{64};
-        Chosen<size_t> shapes{2048}, shapes_of_run{2048}, lamps{64};
+        Chosen<size_t> shapes{2048}, shapes_of_run{256}, lamps{64};
         const EstimatedRadiosity radiosity(s);
         Chosen<PlaneMirror> mirrors{128};
         auto normal = [&](size_t i) { return unit(area_vector(s.shapes[i])); };
