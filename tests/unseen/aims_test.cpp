@@ -85,7 +85,7 @@ TEST_CASE("of many edges and shapes each is as likely as any other, until paths 
             const real x = (y - aim.d * (1000 / aim.d.z)).x;
             return aim.at >= 64 && int(std::clamp(x, real(0), real(299))) / 100 == which;
         };
-        CHECK(part_of_aims(aims, y, 3000, is_shape_of) > 0.03);  // of 1/4
+        CHECK(part_of_aims(aims, y, 10000, is_shape_of) > 0.05);  // of 1/4
     }
     auto at = [](size_t i) { return [i](const Aims::Aim& aim) { return aim.at == i; }; };
     auto is_shape = [](const Aims::Aim& aim) { return aim.at >= 64; };
