@@ -100,9 +100,10 @@ private:
     Light as_light_;
 };
 
+inline vec3 centroid(const Shape& s) { return s.is_triangle() ? (s.a + s.b + s.c) / 3 : s.a; }
 // The same three times as large: glass displaces what it shows.
 inline Shape grown(Shape s) {
-    const vec3 centre = s.is_triangle() ? (s.a + s.b + s.c) / 3 : s.a;
+    const vec3 centre = centroid(s);
     for (vec3* p : {&s.a, &s.b, &s.c}) *p = centre + 3 * (*p - centre);
     s.r *= 3;
     return s;

@@ -44,7 +44,7 @@ std::vector<size_t> half_of_greatest(const std::vector<size_t>& numbers, size_t 
     return chosen;
 }
 
-// The radiosity rho E of shapes, up to a factor, as if nothing were between a shape's centre and
+// The radiosity rho E of shapes, up to a factor, as if nothing were between a shape's centroid and
 // the lights, and it faced each of them.  Of more than 64 lights it knows the 32 of the greatest
 // intensity, and others by lot.
 class EstimatedRadiosity {
@@ -64,8 +64,7 @@ public:
     }
     // By other lights than itself; 0 about a point light, where E is infinite.
     real of(size_t shape) const {
-        const Shape& s = scene_.shapes[shape];
-        const vec3 p = s.is_triangle() ? (s.a + s.b + s.c) / 3 : s.a;
+        const vec3 p = centroid(scene_.shapes[shape]);
         real E = 0;
         for (const size_t i : chosen_)
             if (int32_t(i) != scene_.light_of[shape])
