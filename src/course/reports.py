@@ -12,7 +12,7 @@ import pathlib
 import re
 import time
 
-MOST_MESSAGES = 5
+MAX_MESSAGES = 5
 # What a compiler says where a header is missing, which `make check` knows, too.
 OF_A_HEADER = re.compile(r"(member of|in namespace|template) [^ ]*std|std::.* (has not been declared|incomplete type)|#include <|the header <")
 ALONE = '; a region has only what its file includes'
@@ -36,7 +36,7 @@ def own_messages(said, region):
         found = re.match(r'student/%s:(\d+):(?:\d+:)? (?:fatal )?error: (.*)' % re.escape(region.exercise), part)
         if found and 1 <= int(found[1]) <= region.text.count('\n'):
             kept.append(f'{region.file}:{region.line + int(found[1]) - 1}: {plain(found[2], 200)}' + (ALONE if OF_A_HEADER.search(part) else ''))
-    return list(dict.fromkeys(kept))[:MOST_MESSAGES]
+    return list(dict.fromkeys(kept))[:MAX_MESSAGES]
 
 
 def share(verdict, items, stub):

@@ -18,8 +18,8 @@ LARGEST_FILE = 1 << 20      # bytes of a source file; ours have some 20 000
 LARGEST_REGION = 1 << 16
 LARGEST_ARCHIVE = 1 << 28   # bytes, unpacked: a starter has fewer than 3 million
 LARGEST_INNER = 1 << 24     # of an archive in an archive
-MOST_INNER = 8
-MOST_ENTRIES = 20000        # of an archive or a folder
+MAX_INNER = 8
+MAX_ENTRIES = 20000        # of an archive or a folder
 DEPTH = 4                   # folders above src/
 ARCHIVES = ('.tar.gz', '.tar.xz', '.tar.bz2', '.tgz', '.txz', '.tar', '.zip')
 DAMAGED = (tarfile.TarError, zipfile.BadZipFile, zlib.error, lzma.LZMAError, OSError, EOFError, ValueError, OverflowError,
@@ -127,8 +127,8 @@ def all_paths(top):
         for entry in entries:
             path = folder + entry.name
             paths.append(path)
-            if len(paths) > MOST_ENTRIES:
-                raise Problem(f'the submission holds more than {MOST_ENTRIES} files')
+            if len(paths) > MAX_ENTRIES:
+                raise Problem(f'the submission holds more than {MAX_ENTRIES} files')
             if path.count('/') <= DEPTH + 3 and entry.is_dir(follow_symlinks=False):
                 waiting.append(path + '/')
     return paths
@@ -145,7 +145,7 @@ def copies_in_folder(top, wanted):
             except Problem as problem:
                 data = problem
             copies.setdefault(place[0], {})[place[1]] = data
-    for path in [] if copies else [path for path in paths if is_archive(path)][:MOST_INNER]:
+    for path in [] if copies else [path for path in paths if is_archive(path)][:MAX_INNER]:
         with open_regular(top, path, path) as opened:
             copies.update({f'{path}/{root}': files for root, files in copies_in_archive(opened, wanted).items()})
     return copies
@@ -228,8 +228,8 @@ def members_of_zip(opened):
     opened.seek(max(0, opened.seek(0, os.SEEK_END) - (1 << 16) - 22))
     tail = opened.read()
     at = tail.rfind(b'PK\x05\x06')
-    if at >= 0 and (int.from_bytes(tail[at + 12:at + 16], 'little') > 200 * MOST_ENTRIES or b'PK\x06\x07' in tail):
-        raise Problem(f'the archive holds more than {MOST_ENTRIES} files')
+    if at >= 0 and (int.from_bytes(tail[at + 12:at + 16], 'little') > 200 * MAX_ENTRIES or b'PK\x06\x07' in tail):
+        raise Problem(f'the archive holds more than {MAX_ENTRIES} files')
     with zipfile.ZipFile(opened) as archive:
         for m in archive.infolist():
             kind = 'link' if stat.S_ISLNK(m.external_attr >> 16) else 'file'
@@ -244,15 +244,15 @@ def copies_in_archive(opened, wanted, outermost=True):
         opened.seek(0)
         members = members_of_zip(opened) if magic[:4] == b'PK\x03\x04' else members_of_tar(opened, magic)
         for count, (name, kind, size, load) in enumerate(members):
-            if count >= MOST_ENTRIES:
-                raise Problem(f'the archive holds more than {MOST_ENTRIES} files')
+            if count >= MAX_ENTRIES:
+                raise Problem(f'the archive holds more than {MAX_ENTRIES} files')
             name = re.sub(r'^(\./)+', '', name)
             place = place_of(name, wanted)
             if place:
                 copy = copies.setdefault(place[0], {})
                 copy[place[1]] = Problem(f'the archive holds {place[1]} twice') if place[1] in copy else (
                     one_member(place[1], kind, size, load))
-            elif outermost and is_archive(name) and kind == 'file' and size < LARGEST_INNER and len(archives) < MOST_INNER:
+            elif outermost and is_archive(name) and kind == 'file' and size < LARGEST_INNER and len(archives) < MAX_INNER:
                 archives[name] = load()
     except DAMAGED:
         raise Problem('the archive is damaged') from None

@@ -51,30 +51,30 @@ struct Gather {
 
 // The probability to continue, 3/2 of the throughput.  It is below 1 in long paths, so that they
 // end between white walls.
-inline real probability(const PathState& s) {
-    const real most = s.k < EndlessNumbers::structured ? 1 : real(0.98);
-    return std::min(most, max_of(s.beta) * real(1.5));
+inline real probability(const PathState& path) {
+    const real most = path.k < EndlessNumbers::structured ? 1 : real(0.98);
+    return std::min(most, max_of(path.beta) * real(1.5));
 }
 
 // Radiance along a camera ray.  The path always continues at its first vertex.
 inline rgb Li(const Gather& g, const Ray& ray, const EndlessNumbers& u) {
     rgb L;
-    for (PathState s{ray, ray.o};;) {
-        const real q = s.k > 0 ? probability(s) : 1;
-        const bool goes = s.k == 0 || (q > 0 && u.xi(s.k) < q);
+    for (PathState path{ray, ray.o};;) {
+        const real q = path.k > 0 ? probability(path) : 1;
+        const bool goes = path.k == 0 || (q > 0 && u.xi(path.k) < q);
         // The weight of the maps' value: 1 - [xi < q] / q.
-        const real weight = s.k == 0 ? 0 : goes ? 1 - 1 / q : 1;
+        const real weight = path.k == 0 ? 0 : goes ? 1 - 1 / q : 1;
         // At the scene's depth step() finds emission only.
-        PathState now = s;
+        PathState now = path;
         if (goes)
             now.beta /= q;
         else
             now.k = g.scene.depth;
-        const VertexEvents e = step(g.scene, g.technique, now, u[s.k]);
-        L += s.beta * e.Le * e.weight + now.beta * e.direct.L;
-        if (e.met && weight != 0) L += s.beta * g.known.at(e.vertex) * weight;
+        const VertexEvents e = step(g.scene, g.technique, now, u[path.k]);
+        L += path.beta * e.Le * e.weight + now.beta * e.direct.L;
+        if (e.met && weight != 0) L += path.beta * g.known.at(e.vertex) * weight;
         if (e.end != End::no) return L;
-        s = e.next;
+        path = e.next;
     }
 }
 

@@ -73,15 +73,15 @@ public:
     }
 
     // A vertex, as a visitor of Li.
-    void operator()(const PathState& s, const VertexEvents& e) const {
+    void operator()(const PathState& path, const VertexEvents& e) const {
         if (!e.met) return;
         const Vertex& x = e.vertex;
-        std::fprintf(out_, "vertex %d: shape %u%s at distance %.17g\n", s.k, x.hit.id,
+        std::fprintf(out_, "vertex %d: shape %u%s at distance %.17g\n", path.k, x.hit.id,
                      origin(x.hit.id).c_str(), double(x.hit.t));
         print("  p", x.at.p);
         print("  n", x.at.n);
-        print("  throughput", s.beta);
-        if (s.eta2 != 1) print("  its factor of refraction", {s.eta2});
+        print("  throughput", path.beta);
+        if (path.eta2 != 1) print("  its factor of refraction", {path.eta2});
         if (x.material->emits()) {
             print("  emission", e.Le);
             print("  MIS weight", {e.weight});
@@ -147,8 +147,8 @@ inline void replay(const NamedScene& scene, const Technique& technique,
     if (view) return log.end("a view, not radiance", view(at));
     End why = End::no;
     const rgb L =
-        Li(scene, technique, at.ray, at.sampler, [&](const PathState& s, const VertexEvents& e) {
-            log(s, e);
+        Li(scene, technique, at.ray, at.sampler, [&](const PathState& path, const VertexEvents& e) {
+            log(path, e);
             why = e.end;
         });
     log.end(in_words(why), L);

@@ -89,12 +89,12 @@ struct ShadowSample {
 template <class Visitor>
 ShadowSample shadow_Li(const Scene& scene, const Technique& t, const Start& at, Visitor visit) {
     ShadowSample sample;
-    Li(scene, t, at.ray, at.sampler, [&](const PathState& s, const VertexEvents& e) {
+    Li(scene, t, at.ray, at.sampler, [&](const PathState& path, const VertexEvents& e) {
         auto& [rest, first] = sample;
-        rest += s.beta * e.Le * e.weight;
-        if (s.k == 0) first = shadowed(scene, e);
-        rest += s.k == 0 ? e.direct.L - first.wV : s.beta * e.direct.L;
-        visit(s, e);
+        rest += path.beta * e.Le * e.weight;
+        if (path.k == 0) first = shadowed(scene, e);
+        rest += path.k == 0 ? e.direct.L - first.wV : path.beta * e.direct.L;
+        visit(path, e);
     });
     return sample;
 }

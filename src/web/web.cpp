@@ -147,10 +147,10 @@ std::string light_sample(const Vertex& x, const DirectLight& d) {
 }
 
 // One vertex: every number of the rendering equation there.
-std::string vertex(const PathState& s, const VertexEvents& e) {
+std::string vertex(const PathState& path, const VertexEvents& e) {
     Object o;
-    o.scalars({{"k", s.k}});
-    o.vectors({{"from", s.from}, {"direction", s.ray.d}, {"throughput", s.beta}});
+    o.scalars({{"k", path.k}});
+    o.vectors({{"from", path.from}, {"direction", path.ray.d}, {"throughput", path.beta}});
     if (e.end != End::no) o.add("end", json::string(in_words(e.end)));
     if (!e.met) return o.text();
     const uint32_t shape = e.vertex.hit.id;
@@ -285,9 +285,9 @@ EXPORT(path) void path(int x, int y, double i, uint32_t set) {
     std::vector<std::string> vertices;
     End why = End::no;
     const rgb L = Li(scene(), options.technique, at.ray, at.sampler,
-                     [&](const PathState& s, const VertexEvents& e) {
-                         log(s, e);
-                         vertices.push_back(vertex(s, e));
+                     [&](const PathState& path, const VertexEvents& e) {
+                         log(path, e);
+                         vertices.push_back(vertex(path, e));
                          why = e.end;
                      });
     log.end(in_words(why), L);
