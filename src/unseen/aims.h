@@ -112,7 +112,7 @@ public:
             if (i > 0 && s.material_of[i] != s.material_of[i - 1]) end_run();
             if (s.light_of[i] != no_light) lamps.add(i);
             if (s.light_of[i] == no_light || radiosity.reflectance(i) > 0) shapes_of_run.add(i);
-            if (s.light_of[i] != no_light || !s.shapes[i].is_triangle()) continue;
+            if (!s.shapes[i].is_triangle()) continue;
             const auto& [a, b, c, r] = s.shapes[i];
             of_run.add({b, c, a});
             if (!halves(i, i + 1)) of_run.add({c, a, b});

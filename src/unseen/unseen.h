@@ -148,8 +148,8 @@ public:
                 consider(of.missing(), "paths from the eye bring less than paths from " + name);
             for (const Missing& of : l.from_eye) {
                 consider(of.missing(), "paths from the eye that aim bring more of " + name);
-                const double variance = of.hits < l.few() ? of.by_chance : 0;
-                consider(std::max(variance, of.of_few()), hit(" by rare bright paths", of.hits));
+                if (of.hits < std::max(10.0, l.few() / 2))
+                    consider(of.by_chance, hit(" by rare bright paths", of.hits));
             }
             if (l.met < std::max(10.0, l.few()))
                 consider(l.variance, hit(", smaller than a pixel,", l.met));
@@ -174,7 +174,7 @@ private:
     };
     struct Missing {
         double sum = 0, squares = 0, variance = 0, came = 0, hits = 0;
-        double by_chance = 0;  // variance of the hits, if their number is random (Poisson)
+        double by_chance = 0;  // variance of the hits, for their number is random (Poisson)
 
         void add(const Brought& of, double t, double weight) {
             sum += weight * of.sum, squares += weight * of.squares;
@@ -188,10 +188,6 @@ private:
             return sum - came > 3 * std::sqrt(variance) ? 2 * square((sum - came) / sum) * squares
                                                         : 0;
         }
-        // Variance of fewer than ten hits, by what aimed paths bring.
-        double of_few() const {
-            return sum > 3 * std::sqrt(variance) && hits < 10 ? squares / std::max(1.0, hits) : 0;
-        }
     };
     struct OneLight {
         double line = 0, variance = 0, met = 0;  // met: expected camera rays
@@ -199,8 +195,8 @@ private:
         std::array<Missing, classes> from_light, from_eye;
         std::array<NearSum, growths> near;
 
-        // Fewer hits than a sixteenth of a pixel's samples are random in number, even if it has
-        // all of them: both halves may have met the light equally often, and agree by chance.
+        // Fewer hits than a sixteenth of a pixel's samples are rare, even if it has all of them; of
+        // more than half as many the number is hardly random: chosen by calibration.
         double few() const { return samples / weight / 16; }
     };
     std::vector<OneLight> lights_;

@@ -74,16 +74,22 @@ inline std::optional<EyePath> eye_path(const Scene& s, const Band& band, const T
     return found.pdf > 0 ? std::optional(found) : std::nullopt;
 }
 
-// Paths that bring much tell where to aim.
+// Learns where to aim: half by all that an aim brings, half by its parts of each class of radiance,
+// for the brightest light would have nearly all.
 inline void learn(Aims& aims, const Scene& s, const Band& band, const Technique& technique,
                   uint64_t paths) {
-    std::vector<double> worth(aims.size());
+    std::vector<std::array<double, classes>> brought(aims.size());
+    std::array<double, classes> all{};
     for (uint64_t k = 0; k < paths; ++k)
-        if (const auto path = eye_path(s, band, technique, aims, k)) {
-            double L = 0;
-            for (const auto& [light, of_light] : path->brought) L += of_light;
-            worth[path->aim] += L * L;
-        }
+        if (const auto path = eye_path(s, band, technique, aims, k))
+            for (const auto& [light, L] : path->brought)
+                brought[path->aim][class_of(L)] += L, all[class_of(L)] += L;
+    const double sum = std::accumulate(all.begin(), all.end(), 0.0);
+    const double present = double(std::ranges::count_if(all, [](double L) { return L > 0; }));
+    std::vector<double> worth(aims.size());
+    for (size_t i = 0; i < worth.size(); ++i)
+        for (size_t k = 0; k < classes; ++k)
+            if (all[k] > 0) worth[i] += brought[i][k] * (1 / sum + 1 / (present * all[k]));
     aims.prefer(worth);
 }
 
@@ -91,7 +97,7 @@ inline void learn(Aims& aims, const Scene& s, const Band& band, const Technique&
 
 struct LightsInView {
     std::vector<NearMisses> groups;
-    std::vector<size_t> noisy;  // pixels of groups that cover less than 16
+    std::vector<size_t> noisy;  // pixels of groups whose points cover less than 16
 };
 
 // Calls add(light, pixel, pdf of the point, pdf of aims), densities per pixel, for n points of each
@@ -127,7 +133,12 @@ inline LightsInView lights_in_view(const Scene& s, const Band& band, const Techn
     auto add = [&](size_t light, size_t pixel, double pdf_of_points, double pdf) {
         parts[group_of[light]][pixel] += 1 / (pdf_of_points * double(points) + pdf * double(aimed));
     };
-    visit_points(s, band, aims, points, add);
+    std::vector<double> by_points(groups);  // area; aims, and their luck, choose no samples
+    auto add_point = [&](size_t light, size_t pixel, double pdf_of_points, double pdf) {
+        by_points[group_of[light]] += 1 / (pdf_of_points * double(points));
+        add(light, pixel, pdf_of_points, pdf);
+    };
+    visit_points(s, band, aims, points, add_point);
     PictureSums sums(groups * classes);
     for (uint64_t k = aimed; k < 2 * aimed; ++k)
         if (const auto path = eye_path(s, band, technique, aims, k)) {
@@ -149,7 +160,7 @@ inline LightsInView lights_in_view(const Scene& s, const Band& band, const Techn
         for (size_t k = 0; k < classes; ++k)
             group.from_eye[k] = sums.of(g * classes + k, band.count * s.size.width);
         for (const auto& [i, a] : parts[g]) group.area += a, group.a += std::max(0.0, a * (1 - a));
-        if (group.area < 16)
+        if (by_points[g] < 16)
             for (const auto& [i, a] : parts[g]) view.noisy.push_back(i);
     }
     return view;

@@ -180,12 +180,12 @@ TEST_CASE("a small thing is not lost in a mesh of another material") {
     CHECK(Aims(s).size() == 128 + 2 * 64);
 }
 
-TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; black lamps have none") {
+TEST_CASE("aims are the edges of quads, without diagonals, and shapes, but for black lamps") {
     Scene s;
     s.materials = {{}, {}, {Mirror({1, 1, 1})}};
     s.materials[1].Le = {1, 1, 1};
     CHECK(Aims(s).size() == 0);
-    add_sphere(s, {}, 1, 1), add_quad(s, {}, {1, 0, 0}, {0, 1, 0}, 1);
+    add_sphere(s, {}, 1, 1);
     CHECK(Aims(s).size() == 0);
     add_sphere(s, {}, 1, 0);
     CHECK(Aims(s).size() == 2);
@@ -237,6 +237,9 @@ TEST_CASE("aims are the edges of quads, without diagonals, and the shapes; black
     // An edge of two triangles counts once, whichever way it leads.
     add_quad(s, {3, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
     CHECK(Aims(s).size() == 7 + 2 * 5);
+    // Gaps are beside lamps, too.
+    add_quad(s, {5, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+    CHECK(Aims(s).size() == 7 + 4 + 2 * 5);
 }
 
 TEST_CASE("an eye has views in mirrors and panes, and in lists of which each can show the next") {

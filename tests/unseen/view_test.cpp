@@ -59,6 +59,19 @@ TEST_CASE("a lamp that the eye sees through a gap covers part of a pixel") {
     CHECK(seen(Aims(s)) == 0);
 }
 
+TEST_CASE("whether a lamp's pixels are noisy does not depend on what aims find") {
+    const real h = real(0.316);  // almost 16 pixels
+    Scene s = wall_with_hole(real(0.002));
+    add_quad(s, {-h / 2, real(0.6), real(0.1)}, {h, 0, 0}, {0, h, 0}, 3);
+    prepare(s);
+    const LightsInView few = lights_in_view(s, {0, 32}, {}, Aims(s), 64);
+    const LightsInView many = lights_in_view(s, {0, 32}, {}, Aims(s), 65536);
+    CHECK(few.groups[0].area < 16);
+    CHECK(many.groups[0].area > 16);
+    CHECK(!few.noisy.empty());
+    CHECK(!many.noisy.empty());
+}
+
 TEST_CASE("the eye's paths that aim find a lit room behind a hole, also in one mirror or two") {
     // Behind the hole a bright wall, lit by a point 25 cm before it: radiance rho / pi I cos / d^2.
     const real h = real(0.01);
@@ -102,6 +115,31 @@ TEST_CASE("the eye's paths that aim find a lit room behind a hole, also in one m
         const auto [by_luck, its_error] = in_view_by(Aims(s));  // at mirrors, not at the hole
         CHECK((by_luck <= 3 * its_error) == (mirrors > 0));
     }
+}
+
+TEST_CASE("half of what is learned is of all light, half of each class of radiance alike") {
+    // Two balls, each before a point light at the eye; one of them is 2^9 times as bright.
+    // Half of the aims are as before: half alike, half by radiosity.
+    Scene s = room(nullptr, {Rough({real(0.5), real(0.5), real(0.5)})});
+    s.size = {48, 32};
+    s.shapes.clear(), s.material_of.clear(), s.light_of.clear();
+    const vec3 bright = s.camera.eye + s.camera.forward * 4 - s.camera.right;
+    const vec3 dim = bright + 2 * s.camera.right;
+    s.materials[1] = {Rough({real(0.5) / 512, real(0.5) / 512, real(0.5) / 512})};
+    add_sphere(s, bright, real(0.3), 0), add_sphere(s, dim, real(0.3), 1);
+    add_light(s, {s.camera.eye, PointLight(), {900, 900, 900}});
+    prepare(s);
+    Aims aims(s);
+    REQUIRE(aims.size() == 4);
+    auto part_of_dim = [&] {
+        int of_dim = 0;
+        for (uint64_t k = 0; k < 10000; ++k)
+            of_dim += aims.sample(s.camera.eye, radical_inverse(2, k), {0, 0}).value().at >= 2;
+        return of_dim / 1e4;
+    };
+    CHECK(std::abs(part_of_dim() - 0.25) < 0.02);
+    learn(aims, s, {0, 32}, {}, 10000);
+    CHECK(std::abs(part_of_dim() - (0.25 + 0.25) / 2) < 0.02);
 }
 
 TEST_CASE("paths that aim and all others bring the same, where both may find it") {
